@@ -120,7 +120,7 @@ Hash hash_of_bake(const std::vector<BakeStep>& steps, const std::vector<Texture>
     return hasher.value(width).value(height).value(space).result();
 }
 
-/// The newest bakes by what they were made from.
+/// The newest baked pictures, by the hash of what they were made from.
 class RecentBakes {
 public:
     PicturePtr find(Hash key) {
@@ -132,6 +132,8 @@ public:
         return nullptr;
     }
     void add(Hash key, const PicturePtr& picture) {
+        // The memory of the remembered pictures.
+        // Taste: a larger value bakes fewer pictures again, when scenes have many.
         constexpr size_t kMostBytes = size_t{256} << 20u;
         const std::scoped_lock lock(mutex_);
         found_.emplace_back(key, picture);
@@ -153,7 +155,8 @@ double finite(double value) {
 }
 
 Color result(const BakeStep& step, const std::vector<Color>& done) {
-    const auto at = [&](size_t argument) -> const Color& {  // check() passed those that count
+    // The function check() passed the arguments that count.
+    const auto at = [&](size_t argument) -> const Color& {
         return done[std::min<size_t>(step.args[argument], done.size() - 1)];
     };
     const Color& a = at(0);
@@ -227,7 +230,7 @@ Image bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textu
         job.check();
         samplers.emplace_back(texture, glm::dvec3(0), kMostBakeSide);
     }
-    // A picture of the same size that lies on the whole: its texels as they are
+    // A picture of the same size that lies on the whole gives its texels as they are.
     const std::array<double, 6> identity = Texture().to_picture;
     std::vector<uint8_t> same;
     for (size_t i = 0; i < textures.size(); ++i)
@@ -272,7 +275,7 @@ PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Te
     if (made == nullptr) {
         Image image = bake(steps, textures, width, height, job);
         if (space == ColorSpace::Linear)
-            image.linear = false;  // numbers that nothing is to encode
+            image.linear = false;  // the numbers are not to be encoded
         made = make_picture(png_bytes(image), space, name);
         remembered.add(key, made);
     }

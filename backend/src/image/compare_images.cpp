@@ -11,9 +11,17 @@
 namespace lodestone::image {
 namespace {
 
+/// The smallest alpha that counts as covered.
+/// Law: the smallest alpha of 8 bits that is not 0.
 constexpr float kCovered = 1.0f / 255.0f;
+/// The radius of the Gaussian window in pixels: it is 11 x 11.
+/// Law: Wang et al. 2004, section III.C.
 constexpr int kRadius = 5;
+/// The constant of luma: (K1 L)^2 with K1 = 0.01.
+/// Law: Wang et al. 2004, section III.C, for values 0...1.
 constexpr double kC1 = 0.01 * 0.01;
+/// The constant of contrast: (K2 L)^2 with K2 = 0.03.
+/// Law: Wang et al. 2004, section III.C.
 constexpr double kC2 = 0.03 * 0.03;
 
 using Plane = std::vector<double>;
@@ -27,7 +35,7 @@ void check_size(const Image& image, const Image& like) {
              " pixels has ", image.pixels.size(), " values");
 }
 
-/// Encoded color times alpha.
+/// The picture's encoded color times alpha.
 Image over_black(const Image& image) {
     Image out = encoded(image);
     for (size_t i = 0; i < out.pixels.size(); i += 4) {
@@ -73,8 +81,9 @@ std::array<double, 2 * kRadius + 1> gaussian() {
     return weights;
 }
 
-/// Weighted mean along one axis; `stride` steps along it, `length` values of it.
+/// The weighted mean along one axis; `stride` is a step along it, `length` its number of values.
 double blurred_at(const double* line, int64_t stride, int64_t length, int64_t at) {
+    // Law: a Gaussian of sigma 1.5 (Wang et al. 2004, section III.C).
     static const std::array<double, 2 * kRadius + 1> kWeights = gaussian();
     double sum = 0;
     double total = 0;

@@ -9,6 +9,8 @@
 namespace lodestone::image {
 namespace {
 
+/// The steps of a channel of an identity.
+/// Law: eight bits a channel, 2^24 things; half floats hold such fractions exactly.
 constexpr double kSteps = 256;
 
 void check_sizes(const Image& a, const Image& b) {
@@ -18,7 +20,7 @@ void check_sizes(const Image& a, const Image& b) {
              " pixels cannot be compared with one of ", a.width, " x ", a.height);
 }
 
-/// |a - b| of R, G, B of a pixel of encoded pictures, over black.
+/// The differences |a - b| of R, G, B of a pixel of encoded pictures, over black.
 std::array<float, 3> apart(const Image& a, const Image& b, size_t pixel) {
     const float* left = a.pixels.data() + 4 * pixel;
     const float* right = b.pixels.data() + 4 * pixel;
@@ -77,6 +79,8 @@ std::array<float, 3> difference_color(float difference) {
         float at;
         std::array<float, 3> color;
     };
+    // The colors of differences.
+    // Taste: steps of about twice the difference, from what nobody sees to what everybody does.
     static constexpr std::array<ColorStop, 5> kStops{{{0, {0, 0, 0}},
                                                       {0.02f, {0.02f, 0.06f, 0.6f}},
                                                       {0.05f, {0.02f, 0.5f, 0.15f}},

@@ -10,7 +10,9 @@
 namespace lodestone::image {
 namespace {
 
-constexpr size_t kLargePicture = size_t{1} << 24u;  // pixels: 256 MiB while it is decoded
+/// Pictures of more pixels are decoded one at a time: 256 MiB each.
+/// Taste: a larger value lets more threads take such memory at once.
+constexpr size_t kLargePicture = size_t{1} << 24u;
 
 /// Averages blocks of `step` x `step` texels, colors weighted by alpha.
 void reduce(Image& image, int step) {
@@ -77,7 +79,7 @@ TexelsPtr texels_with_cutoff(const Texture& texture, double cutoff, int most_sid
         float* const at = image.pixels.data() + i;
         const double number = number_of(texture, {at[0], at[1], at[2], at[3]});
         std::fill(at, at + 3, number >= cutoff ? 1.0f : 0.0f);
-        at[3] = 1;  // equal weights
+        at[3] = 1;  // equal weights for all texels
     }
     TexelsPtr out = reduced(std::move(image), most_side);
     auto gray = std::make_shared<DecodedTexels>(*out);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OpenEXR allocates by what the header says, so the header's sizes are checked by our own walk
-// through it first (OpenEXR's own limits are global and would hold for our host program, too).
-// Where OpenEXR reads a header otherwise than we do (it takes an attribute's size from its type),
-// it is refused.
+// OpenEXR reader: pictures from OpenEXR files, their headers checked first. OpenEXR allocates
+// memory by the sizes in the header, so our own walk through the header checks them first
+// (OpenEXR's own limits are global and would hold for our host program, too). Where OpenEXR reads a
+// header otherwise than we do (it takes an attribute's size from its type), the file is refused.
 #include "base/error.h"
 #include "image/image_codecs.h"
 
@@ -19,7 +19,7 @@ namespace lodestone::image {
 namespace {
 
 struct PixelWindow {
-    int32_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;  // inclusive
+    int32_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;  // both ends inclusive
 
     int64_t width() const { return int64_t{x1} - x0 + 1; }
     int64_t height() const { return int64_t{y1} - y0 + 1; }
@@ -63,7 +63,7 @@ T value_at(std::string_view bytes, size_t offset) {
     return value;
 }
 
-/// A name of at most 255 characters that ends with 0; moves `at` behind it.
+/// Reads a name of at most 255 characters that ends with 0; moves `at` behind it.
 std::string_view word(std::string_view bytes, size_t& at) {
     const size_t end = bytes.substr(0, std::min(bytes.size(), at + 256)).find('\0', at);
     if (end == std::string_view::npos)
@@ -73,9 +73,12 @@ std::string_view word(std::string_view bytes, size_t& at) {
     return found;
 }
 
+/// Reads the layout from the header.
 /// source: openexr.com, "OpenEXR File Layout" (magic, version and flags, attributes).
 ExrLayout layout_of(std::string_view bytes) {
+    // Law: bit 11 of the version field marks deep data ("OpenEXR File Layout").
     constexpr uint32_t kDeep = 0x800;
+    // Law: bit 12 of the version field marks several parts ("OpenEXR File Layout").
     constexpr uint32_t kManyParts = 0x1000;
     if (bytes.size() < 8)
         throw std::runtime_error("the header ends too early");
@@ -98,18 +101,26 @@ ExrLayout layout_of(std::string_view bytes) {
             layout.tile_pixels =
                 uint64_t{value_at<uint32_t>(bytes, at)} * value_at<uint32_t>(bytes, at + 4);
         } else if (name == "channels") {
-            layout.channels = size / 18;  // of at least a letter, its 0 and 16 bytes
+            layout.channels = size / 18;  // each has at least a letter, its 0 and 16 bytes
         }
         at += size;
     }
     return layout;
 }
 
-constexpr int kRowsAtOnce = 256;  // the largest block of any compression (DWAB)
+/// Rows that are read at a time.
+/// Law: the rows of the largest block of any compression (DWAB).
+constexpr int kRowsAtOnce = 256;
 
 void check_layout(const ExrLayout& layout, int64_t most_pixels) {
+    // Pixels along a side.
+    // Taste: a larger value lets a file ask for larger tables of rows.
     constexpr int64_t kMostSide = 1 << 16;
+    // Channels of a file.
+    // Taste: a larger value lets a file ask for more memory a pixel.
     constexpr uint64_t kMostChannels = 256;
+    // Bytes that OpenEXR may take for the rows it reads at a time.
+    // Taste: a larger value reads wider pictures.
     constexpr uint64_t kMostBufferBytes = uint64_t{1} << 30u;
     for (const PixelWindow& window : {layout.data, layout.display}) {
         if (window.width() < 1 || window.height() < 1 || window.width() > kMostSide ||
@@ -130,7 +141,7 @@ bool same(const PixelWindow& ours, const Imath::Box2i& theirs) {
            ours.y1 == theirs.max.y;
 }
 
-/// The part within the display window; without one, all of that.
+/// The part within the display window; without a part, all of the window.
 PixelWindow window_of(const ExrLayout& layout, const std::optional<ImageRegion>& part,
                       const std::string& name) {
     const PixelWindow& all = layout.display;
@@ -147,8 +158,8 @@ PixelWindow window_of(const ExrLayout& layout, const std::optional<ImageRegion>&
     return {x, y, x + part->width - 1, y + part->height - 1};
 }
 
-/// Reads what `data` holds of `window` into `pixels` (RGBA, the window's rows), a few rows at a
-/// time.
+/// Reads the pixels of `data` that `window` has into `pixels` (RGBA, the window's rows), a few rows
+/// at a time.
 void read_rows(Imf::InputFile& file, const PixelWindow& data, const PixelWindow& window, bool gray,
                std::vector<float>& pixels) {
     const int32_t first = std::max(window.x0, data.x0);

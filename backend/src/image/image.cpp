@@ -11,7 +11,8 @@
 namespace lodestone::image {
 namespace {
 
-/// Compressed pictures larger than this are no pictures.
+/// The bytes of the largest file that is read.
+/// Taste: larger files are no pictures; a larger value lets one take more than 2 GiB.
 constexpr uint64_t kMostBytes = uint64_t{1} << 31u;
 
 unsigned char byte_of(float value) {
@@ -29,6 +30,7 @@ float decode_srgb(float encoded) {
 }
 
 Image blank_image(int64_t width, int64_t height, bool linear, const std::string& name) {
+    // Law: kMostPixels as a signed number, for the comparison.
     constexpr auto kMost = static_cast<int64_t>(kMostPixels);
     if (width < 1 || height < 1 || width > kMost || height > kMost || width * height > kMost)
         fail(Status::BadFile, "'", name, "': a picture of ", width, " x ", height,
@@ -70,7 +72,7 @@ Image encoded(const Image& image) {
         const float alpha = pixel[3] > 0 ? std::min(pixel[3], 1.0f) : 0.0f;
         for (int channel = 0; channel < 3; ++channel) {
             const float straight = alpha > 0 ? pixel[channel] / alpha : pixel[channel];
-            // The comparison is false for what is not a number.
+            // The comparison is false for a value that is not a number.
             pixel[channel] = straight >= 1 ? 1.0f : straight > 0 ? encode_srgb(straight) : 0.0f;
         }
         pixel[3] = alpha;

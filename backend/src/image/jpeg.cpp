@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// libjpeg reports errors through a function that must not return: ours jumps out. Between setjmp
-// and the last libjpeg call there are only plain values; memory is owned by the caller's frame.
+// JPEG reader: pictures by libjpeg. It reports errors through a function that must not return: ours
+// jumps out. Between setjmp and the last libjpeg call there are only plain values; memory is owned
+// by the caller's frame.
 #include "base/error.h"
 #include "image/image_codecs.h"
 
@@ -13,7 +14,9 @@
 namespace lodestone::image {
 namespace {
 
-/// A scan of a few bytes makes libjpeg go through the whole picture; real ones have some ten.
+/// Scans of a picture.
+/// Taste: real pictures have some ten; a scan of a few bytes makes libjpeg go through the whole
+/// picture, so a larger value lets small files take longer.
 constexpr int kMostScans = 500;
 
 struct JpegReader {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// libpng leaves its functions by longjmp: between setjmp and the last libpng call there are only
-// plain values; whatever owns memory lives in the caller's frame.
+// PNG reader and writer: pictures by libpng. It leaves its functions by longjmp: between setjmp and
+// the last libpng call there are only plain values; everything that owns memory lives in the
+// caller's frame.
 #include "base/error.h"
 #include "image/image_codecs.h"
 
@@ -74,7 +75,7 @@ struct PngReader {
     PngReader& operator=(const PngReader&) = delete;
 };
 
-/// Up to the first row; afterwards rows are RGBA of 8 or 16 bits. False: see the complaint.
+/// Reads up to the first row; afterwards rows are RGBA of 8 or 16 bits. False: see the complaint.
 bool start(PngReader& reader) {
     if (setjmp(png_jmpbuf(reader.png)) != 0)  // NOLINT(cert-err52-cpp)
         return false;

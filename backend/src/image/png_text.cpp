@@ -14,10 +14,13 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n"sv;
-constexpr size_t kFrame = 12;  // length, type, checksum of a chunk
+/// Bytes of a chunk besides its data: length, type and checksum.
+/// Law: PNG specification, 5.3.
+constexpr size_t kFrame = 12;
 
 /// The checksum of PNG's specification (annex D).
 uint32_t checksum(std::string_view bytes) {
+    // Law: the polynomial 0xedb88320 of PNG's specification (annex D).
     static const std::array<uint32_t, 256> kTable = [] {
         std::array<uint32_t, 256> out{};
         for (uint32_t i = 0; i < 256; ++i) {

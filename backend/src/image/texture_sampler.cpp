@@ -35,7 +35,7 @@ PictureFormat format_of(std::string_view bytes) {
     return bytes.starts_with("\x76\x2f"sv) ? PictureFormat::Exr : PictureFormat::Png;
 }
 
-/// Where a texel of a row of `size` is looked up; -1: outside, clipped.
+/// The texel of a row of `size` texels that is looked up; -1: outside, clipped.
 int64_t wrapped(int64_t at, int64_t size, TextureExtension extension) {
     switch (extension) {
         case TextureExtension::Extend:
@@ -69,7 +69,7 @@ double pick(TextureChannel channel, const glm::dvec4& texel) {
     return 0.2126 * texel.x + 0.7152 * texel.y + 0.0722 * texel.z;
 }
 
-/// What only decoding tells.
+/// The facts about a picture that only decoding tells.
 struct PictureFacts {
     PictureFormat format = PictureFormat::Png;
     int width = 0;
@@ -91,7 +91,7 @@ PictureFacts facts_of(const Picture& picture) {
 
 Image decoded(const Picture& picture) {
     Image image = read(picture.bytes, picture.name);
-    if (image.linear) {  // an EXR: colors are times alpha
+    if (image.linear) {  // colors of an EXR are times alpha
         for (size_t i = 0; i < image.pixels.size(); i += 4) {
             const float alpha = image.pixels[i + 3];
             if (alpha > 0 && alpha != 1) {
@@ -170,7 +170,7 @@ glm::dvec4 TextureSampler::texel(glm::dvec2 uv) const {
     glm::dvec2 at = to_picture(texture_, uv);
     if (!std::isfinite(at.x) || !std::isfinite(at.y))
         at = glm::dvec2(0);
-    // Far away nothing can be told apart, and the numbers must fit.
+    // Texels cannot be told apart far away, and the numbers must fit.
     at = glm::clamp(at, -1e6, 1e6);
     const bool closest = texture_.interpolation == TextureInterpolation::Closest;
     const double shift = closest ? 0 : 0.5;
