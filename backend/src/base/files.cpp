@@ -16,6 +16,8 @@
 namespace lodestone {
 namespace {
 
+/// The time between two looks at a lock.
+/// Taste: a larger value wakes less often and notices a free lock later.
 constexpr std::chrono::milliseconds kLockPoll{20};
 
 std::string reason(int number) {
@@ -26,7 +28,8 @@ std::string reason(int number) {
 }  // namespace
 
 std::string read_file(const std::filesystem::path& path, uint64_t limit) {
-    // A pipe that nobody writes to would hold us here; for files the flag means nothing.
+    // The flag is for a pipe that nobody writes to, which would hold us here; for files it means
+    // nothing.
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0)
         fail(Status::Io, "cannot read '", path.string(), "': ", reason(errno));
@@ -61,7 +64,8 @@ std::string read_file(const std::filesystem::path& path, uint64_t limit) {
 }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
-    // Short whatever the path's own name is, which may be as long as a file system allows.
+    // The temporary name is short whatever the path's own name is, which may be as long as a file
+    // system allows.
     static std::atomic<uint32_t> counter{0};
     std::filesystem::path temporary;
     int file = -1;

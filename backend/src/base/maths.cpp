@@ -33,7 +33,8 @@ bool Affine::finite() const {
 }
 
 bool all_finite(std::span<const glm::vec3> points) {
-    glm::vec3 sum(0.0f);  // without a branch: only what is not finite gives anything but 0
+    // The sum has no branch: only a coordinate that is not finite gives anything but 0.
+    glm::vec3 sum(0.0f);
     for (const glm::vec3& p : points)
         sum += p - p;
     return sum == glm::vec3(0.0f);
@@ -52,7 +53,7 @@ bool diagonal(const glm::dmat3& a) {
 
 double stretch(const Affine& transform) {
     const glm::dmat3 square = glm::transpose(transform.linear) * transform.linear;
-    if (diagonal(square))  // turned, mirrored, scaled along its own axes: most are
+    if (diagonal(square))  // turned, mirrored or scaled along its own axes, as most transforms are
         return std::sqrt(std::max({square[0][0], square[1][1], square[2][2]}));
     return std::sqrt(std::max(0.0, eigen_symmetric(square).values.x));
 }
@@ -119,7 +120,7 @@ Bound merged(const Bound& a, const Bound& b) {
     out.box = a.box;
     out.box.add(b.box);
     out.center = out.box.center();
-    // The smaller of two valid spheres: around both spheres, or around the box.
+    // The radius is the smaller of two valid ones: around both spheres, or around the box.
     out.radius = std::max(glm::length(a.center - out.center) + a.radius,
                           glm::length(b.center - out.center) + b.radius);
     out.radius = std::min(out.radius, 0.5 * glm::length(out.box.size()));
@@ -136,8 +137,8 @@ Bound transformed(const Bound& bound, const Affine& transform, double stretch) {
     Bound out;
     out.center = transform(bound.center);
     out.radius = bound.radius * stretch;
-    // Axis by axis, in the order in which a point is transformed: to the last bit the box of the
-    // eight corners.
+    // The box is made axis by axis, in the order in which a point is transformed: it is the box of
+    // the eight corners to the last bit.
     const glm::dmat3& m = transform.linear;
     const auto sum = [&](auto pick) {
         const glm::dvec3 x = pick(m[0] * bound.box.low.x, m[0] * bound.box.high.x);

@@ -7,7 +7,11 @@
 namespace lodestone {
 namespace {
 
+/// The bytes of a large page.
+/// Law: x86-64 and the kernel's transparent huge pages have 2 MB.
 constexpr size_t kPage = size_t{2} << 20u;
+/// The bytes to which every address is aligned.
+/// Law: a cache line, and the widest vector register.
 constexpr size_t kAlignment = 64;
 
 thread_local ScratchArena* latest = nullptr;
@@ -65,8 +69,10 @@ void ScratchArena::give_back(void* start, size_t bytes) {
         next_ = first;
         return;
     }
+    // Blocks that are remembered as given back.
+    // Taste: a larger value uses more memory again, for a longer search every time.
     constexpr size_t kMostHoles = 64;
-    for (FreeBlock& hole : holes_) {  // what lies beside one becomes part of it
+    for (FreeBlock& hole : holes_) {  // a block beside a hole becomes part of it
         if (hole.start + hole.size == first || first + bytes == hole.start) {
             hole.start = std::min(hole.start, first);
             hole.size += bytes;
@@ -78,7 +84,7 @@ void ScratchArena::give_back(void* start, size_t bytes) {
 }
 
 void ScratchArena::grow(size_t bytes) {
-    // What is never touched costs no memory, so a block may be generous.
+    // Memory that is never touched costs nothing, so a block may be generous.
     size_t size = std::max(bytes, blocks_.empty() ? expected_ : expected_ / 2);
     const bool large = size >= kPage / 4;
     const size_t alignment = large ? kPage : kAlignment;
@@ -88,7 +94,7 @@ void ScratchArena::grow(size_t bytes) {
     auto* start = static_cast<std::byte*>(::operator new (size, std::align_val_t{alignment}));
 #ifdef MADV_HUGEPAGE
     if (large)
-        madvise(start, size, MADV_HUGEPAGE);  // a wish: without, it is slower
+        madvise(start, size, MADV_HUGEPAGE);  // a wish: without it, it is slower
 #endif
     blocks_.push_back({start, size, alignment});
     next_ = start;

@@ -4,7 +4,7 @@
 namespace lodestone {
 namespace {
 
-/// Length of the valid UTF-8 sequence that starts `bytes`, 0 when there is none.
+/// The length in bytes of the valid UTF-8 sequence that starts `bytes`, 0 when there is none.
 size_t sequence_length(std::string_view bytes) {
     const auto byte = [&](size_t i) { return static_cast<unsigned char>(bytes[i]); };
     const unsigned char first = byte(0);
@@ -17,7 +17,7 @@ size_t sequence_length(std::string_view bytes) {
         if ((byte(i) & 0xc0u) != 0x80)
             return 0;
     }
-    // Overlong forms, surrogates, beyond U+10FFFF.
+    // These are overlong forms, surrogates, and numbers beyond U+10FFFF.
     const unsigned char second = byte(1);
     if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
         (first == 0xf0 && second < 0x90) || (first == 0xf4 && second >= 0x90))
