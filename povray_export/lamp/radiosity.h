@@ -8,10 +8,10 @@
 
 namespace lodestone::povray {
 
-/// radiosity{...} of global_settings. `shading` is filled up and has bounces. `sky`: some light
-/// comes from the background, which POV-Ray counts as a bounce of its own; lamps then have one
-/// more. With it POV-Ray ignores all ambient light: surfaces see the background where nothing hides
-/// it.
+/// The text radiosity{...} of global_settings. `shading` is filled up and has bounces. `sky` says
+/// that some light comes from the background, which POV-Ray counts as a bounce of its own; lamps
+/// then have one more. With radiosity POV-Ray ignores all ambient light: surfaces see the
+/// background where nothing hides it.
 std::string radiosity_text(const Shading& shading, bool sky);
 
 }  // namespace lodestone::povray

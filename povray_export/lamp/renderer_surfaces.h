@@ -6,7 +6,7 @@
 
 namespace lodestone::povray {
 
-/// The reflections of all materials of a model with the finish that they are written with.
+/// The reflections of all materials of a model, with the finish that they are written with.
 light::RendererSurfaces renderer_surfaces(const Model& model);
 
 }  // namespace lodestone::povray

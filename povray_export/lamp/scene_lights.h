@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene lights: the lights of a view, each as far as its pixels can tell, and groups lit by them.
+// Scene lights: the lights of a view, each as exact as its pixels can tell, and groups lit by them.
 #pragma once
 
 #include "light/light_plan.h"
@@ -10,8 +10,8 @@
 
 namespace lodestone::povray {
 
-/// All arguments must outlive it; `shading` is filled up. `bound`: of everything, magnified by
-/// `times`; `occluders` are not.
+/// The lights of one view. All arguments must outlive it; `shading` is filled up. `bound` is around
+/// everything, magnified by `times`; `occluders` are not magnified.
 class SceneLights {
 public:
     SceneLights(const View& view, std::span<const Bound> occluders, const Bound& bound,
@@ -25,10 +25,11 @@ public:
           sampling_(sampling),
           problems_(problems) {}
 
-    /// A light: without its size where no pixel can tell, or with the rays its penumbra needs.
+    /// Appends a light: without its size where no pixel can tell, or with the rays its penumbra
+    /// needs.
     void append(std::string& out, Light light) const;
 
-    /// Declares the lights of a plan; their names, empty for one that gives no light.
+    /// Declares the lights of a plan; returns their names, empty for a light without power.
     std::vector<std::string> declare(std::string& out, const light::LightPlan& plan) const;
 
 private:
@@ -41,7 +42,8 @@ private:
     Problems& problems_;
 };
 
-/// `objects`: the text of what each group of the plan lights. Suns light all groups.
+/// The text of all groups with their lights. `objects` has the text of what each group of the plan
+/// lights. Suns light all groups.
 std::string grouped_text(const light::LightPlan& plan, const std::vector<std::string>& names,
                          const std::vector<std::string>& objects);
 

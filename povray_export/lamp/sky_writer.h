@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sky writer: a world as what is seen behind everything and as the light it gives.
+// Sky writer: a world as the picture behind everything and as the light it gives.
 #pragma once
 
 #include "model/view.h"
@@ -10,32 +10,34 @@
 
 namespace lodestone::povray {
 
-/// How an environment image is made lights.
+/// The lights that an environment image becomes.
 struct SkySampling {
-    size_t lights = 24;   // at most; more: finer shadows of the sky, a ray each at every point seen
-    bool shadows = true;  // false: they shine through everything
+    /// The most lights: more give finer shadows of the sky, for a ray each at every seen point.
+    size_t lights = 24;
+    bool shadows = true;  // false: the lights shine through everything
 };
 
+/// A world as it is written.
 struct WrittenSky {
     glm::dvec3 ambient{0.0};    // radiance that lights everything alike, without shadows
-    std::vector<Light> lights;  // suns for the rest of an environment
+    std::vector<Light> lights;  // suns for an environment's light besides
     std::string pigment;        // pigment{...} of an environment's picture; "" without
-    glm::dvec3 strength{1.0};   // of what it shows
-    std::string file;           // of an environment, relative to the scene; "" without
-    uint64_t bytes = 0;         // of that file
-    bool written = false;       // false: it was there already
+    glm::dvec3 strength{1.0};   // factor on what the picture shows
+    std::string file;           // an environment's file, relative to the scene; "" without
+    uint64_t bytes = 0;         // size of that file
+    bool written = false;       // false: the file was there already
 };
 
-/// Writes an environment's picture into `folder`/i when it is not there. One that cannot be decoded
-/// becomes a problem, and its world counts as its color. Without lights all of its light is
+/// Writes an environment's picture into `folder`/i when it is not there. A picture that cannot be
+/// decoded becomes a problem, and its world counts as its color. Without lights all of its light is
 /// uniform. Throws Error(Io).
 WrittenSky write_sky(const World& world, const SkySampling& sampling,
                      const std::filesystem::path& folder, Problems& problems);
 
-/// An environment's picture behind everything.
+/// The text of an environment's picture behind everything.
 std::string sky_sphere(const WrittenSky& sky);
-/// The same as a ball around the eye, for pictures with indirect light: gathering rays go through
-/// it and meet the background, as lights stand for most of the picture.
+/// The same picture as a ball around the eye, for pictures with indirect light: gathering rays go
+/// through it and meet the background, as lights stand for most of the picture.
 std::string sky_ball(const WrittenSky& sky, const glm::dvec3& eye);
 
 }  // namespace lodestone::povray

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mesh textures: which texture every corner of a mesh's triangles shows.
+// MeshTextures: the texture that every corner of a mesh's triangles shows.
 #pragma once
 
 #include "base/job.h"
@@ -13,32 +13,39 @@
 
 namespace lodestone::povray {
 
-/// Materials of slots, times the colors of vertices where a material uses them: a texture for every
-/// distinct color. More than kMost colors are rounded, in display encoding, as little as it takes;
-/// rounding by 2/255 keeps a difference nobody sees. Bumps need a texture for every plane.
+/// The materials of slots, times the colors of vertices where a material uses them: a texture for
+/// every distinct color. More than kMost colors are rounded, in display encoding, as little as it
+/// takes; rounding by 2/255 keeps a difference nobody sees. Bumps need a texture for every plane.
 class MeshTextures {
 public:
+    /// The most textures of one mesh.
+    /// Taste: a larger value rounds colors less, for memory and parsing of each texture.
     static constexpr size_t kMost = 4096;
+    /// The most planes of a bumped material.
+    /// Taste: a larger value shows bumps on surfaces of more faces, for a texture each.
     static constexpr size_t kMostPlanes = 64;
 
     /// Equal looks share one text. Throws Error(InvalidArgument) for a material out of range.
     MeshTextures(const Model& model, const Representation& representation,
                  const RepresentationOptions& options, PictureWriter& pictures, const Job& job);
 
+    /// The texts of the textures, by number.
     const std::vector<std::string>& texts() const { return texts_; }
     bool uses_uvs() const { return uses_uvs_; }
-    /// Of what light goes through (the largest of the slots'); 0: nothing.
+    /// The index of refraction of what light goes through (the largest of the slots'); 0: nothing.
     double refraction() const { return refraction_; }
 
+    /// Whether the triangle refracts.
     bool is_glass(size_t triangle) const;
-    /// Whether some of it is transparent, but bends no light, though other triangles do.
+    /// Whether some of the mesh is transparent, but bends no light, though other triangles do.
     bool is_clear_beside_glass() const;
 
-    /// Some bumps are not shown: their surface has more than kMostPlanes planes.
+    /// Whether some bumps are not shown: their surface has more than kMostPlanes planes.
     bool bumps_left_out() const { return bumps_left_out_; }
 
+    /// The number of the texture of a triangle's corner.
     size_t of(size_t triangle, int corner) const;
-    /// False: all corners of a triangle show the same.
+    /// Whether corners of one triangle may differ; false: all corners of a triangle show the same.
     bool differ_in_triangles() const { return !corners_.empty(); }
 
 private:
@@ -64,10 +71,10 @@ private:
     const Mesh& mesh_;
     const Job& job_;
     std::vector<TexturedSlot> slots_;
-    std::vector<uint16_t> slot_at_;  // by slot of the mesh: where in slots_
+    std::vector<uint16_t> slot_at_;  // place in slots_, by slot of the mesh
     std::unordered_map<std::string, size_t> known_;
     std::vector<std::string> texts_;
-    std::vector<uint8_t> plane_of_;  // by triangle, of its slot's planes; kMostPlanes: none
+    std::vector<uint8_t> plane_of_;  // by triangle, of its slot's planes; kMostPlanes: no plane
     std::vector<uint32_t> corners_;  // 3 a triangle; empty: the slots' texts
     bool uses_uvs_ = false;
     bool bumps_left_out_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PovrayMessages: what POV-Ray says while it runs, taken apart.
+// PovrayMessages: the text that POV-Ray prints while it runs, taken apart.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace lodestone::povray {
 
-/// Reads POV-Ray's text piece by piece. Memory is bounded whatever it says.
+/// A reader of POV-Ray's text, piece by piece. Its memory is bounded whatever POV-Ray prints.
 class PovrayMessages {
 public:
     void read(std::string_view piece);
@@ -20,11 +20,11 @@ public:
     uint64_t pixels = 0;     // 0 until it traces
     double parse_cpu_s = 0;  // parsing and bounding, from its statistics
     double trace_cpu_s = 0;
-    bool finished = false;  // it said so
+    bool finished = false;  // POV-Ray said so
 
-    /// Its warnings and errors, a line each, the last 8 KB.
+    /// The warnings and errors, a line each, the last 8 KB.
     const std::string& text() const { return text_; }
-    /// The sentence that says why it failed, with file and line where it knows them.
+    /// The sentence that says why POV-Ray failed, with file and line where it knows them.
     std::string reason() const;
 
 private:
@@ -37,11 +37,11 @@ private:
     void line(const std::string& text);
     void keep(const std::string& message);
 
-    std::string line_;     // being read
-    std::string message_;  // being continued
+    std::string line_;     // the line that is read
+    std::string message_;  // the message that goes on
     LineWrap wrapped_ = LineWrap::No;
     std::string text_;
-    std::string error_;    // the first that is certain
+    std::string error_;    // the first one that is certain
     std::string suspect_;  // the last other message
     enum class TimedPhase { None, Parse, Trace } time_ = TimedPhase::None;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runner: starts POV-Ray on an exported scene, watches it, and stops it when asked.
+// POV-Ray runner: starts POV-Ray on an exported scene, watches it, and stops it when asked.
 #pragma once
 
 #include "base/job.h"
@@ -9,40 +9,44 @@
 
 namespace lodestone::povray {
 
+/// The format of the picture.
 enum class OutputFormat : uint8_t {
     Exr = 0,  // linear, values above 1 kept
     Png = 1,  // 8 bits, sRGB
     Ppm = 2,  // 16 bits, linear: for programs without libraries
 };
 
+/// A scene and how it is rendered.
 struct RunOptions {
-    std::filesystem::path folder = {};  // of export_scene
+    std::filesystem::path folder = {};  // the folder of export_scene()
     std::string program = {};  // "": the environment's LODESTONE_POVRAY, else povray on the PATH
     int width = 0;             // 0: as exported
     int height = 0;
-    int threads = 0;  // 0: all
+    int threads = 0;  // 0: all threads
     OutputFormat output = OutputFormat::Exr;
     std::string output_name = {};  // plain ASCII, in the folder; "": picture.exr, .png or .ppm
 };
 
+/// The result of a run.
 struct RunReport {
     int exit_code = 0;
     double parse_cpu_s = 0;  // parsing and bounding, by POV-Ray's own statistics
-    double trace_cpu_s = 0;  // of all its threads
+    double trace_cpu_s = 0;  // sum over all threads
     double wall_s = 0;
     uint64_t peak_bytes = 0;  // VmHWM, sampled every 20 ms
-    std::string messages;     // POV-Ray's own warnings and errors, the last 8 KB
+    std::string messages;     // the last 8 KB of POV-Ray's warnings and errors
     std::filesystem::path picture;
 };
 
-/// The program `run` would start. Throws Error(PovrayMissing) that says what to install or set.
+/// The program that render_scene() would start. Throws Error(PovrayMissing) that says what to
+/// install or set.
 std::string find_program(const std::string& program = "");
 
 /// Renders folder/scene.ini; stages Parse and Trace. The picture appears under its name when it is
 /// complete, and an old one stays until then. Throws Error(PovrayMissing); Error(PovrayFailed) with
 /// POV-Ray's own sentence; Error(Cancelled), at most 1 s after the job was cancelled. However it
 /// ends, no process and no file of a broken run is left; killing this process kills POV-Ray, too.
-/// Safe from any thread, several at once.
+/// It may be called from any thread, several times at once.
 RunReport render_scene(const RunOptions& options, const Job& job = {});
 
 }  // namespace lodestone::povray

@@ -17,8 +17,9 @@ void check_view(const View& view);
 /// would only repeat all of them (measured: 3 times the time for the same edges).
 bool has_depth_blur(const Camera& camera);
 
-/// camera{...} with explicit vectors: no angles, no look_at, no flip. The blur of the depth is that
-/// of a thin lens, as Cycles'; orthographic cameras have none in POV-Ray, which becomes a problem.
+/// Appends camera{...} with explicit vectors: no angles, no look_at, no flip. The blur of the depth
+/// is that of a thin lens, like Cycles'; orthographic cameras have none in POV-Ray, which becomes a
+/// problem.
 void append_camera(std::string& out, const Camera& camera, Antialiasing antialiasing,
                    Problems& problems);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Include files: what a scene shows, one file for every distinct representation, and its pictures.
+// Include files: one file for every distinct representation that a scene shows, and its pictures.
 #pragma once
 
 #include "povray_export/scene/representation_writer.h"
@@ -11,13 +11,14 @@
 
 namespace lodestone::povray {
 
+/// One include file and what is known of it.
 struct IncludeFile {
     const Representation* representation = nullptr;
     Hash hash = 0;
     std::string identifier;
     RepresentationOptions options = {};
-    bool pictured = false;  // shows pictures, as fine as they are seen
-    double texel = std::numeric_limits<double>::infinity();  // of its nearest use
+    bool pictured = false;  // true: it shows pictures, as fine as they are seen
+    double texel = std::numeric_limits<double>::infinity();  // at its nearest use
     uint64_t bytes = 0;
     double cpu_s = 0;
     bool written = false;
@@ -25,18 +26,19 @@ struct IncludeFile {
     bool bumps_left_out = false;
 };
 
-/// Those of one scene. The model must outlive it.
+/// The include files of one scene. The model must outlive them.
 class IncludeFiles {
 public:
-    /// `smaller`: large pictures are halved as far as texels say.
+    /// `smaller` says that large pictures are halved as far as texels allow.
     IncludeFiles(const Model& model, std::filesystem::path folder, bool smaller)
         : model_(model), folder_(std::move(folder)), smaller_(smaller), pictures_(folder_) {}
 
-    /// The index of a representation's file; copies share one.
+    /// Adds a representation and returns the index of its file; copies share one.
     size_t add(const Representation& representation, const RepresentationOptions& options);
-    /// What a texel may cover where one that is `pictured` is used, in metres of its own frame.
+    /// Notes what a texel may cover where a file that is `pictured` is used, in metres of its own
+    /// frame.
     void note_texel(size_t index, double texel);
-    /// Their names, once all are added and seen.
+    /// Gives the files their names, once all are added and seen.
     void name();
     /// Writes r/<16 hex>.inc and the pictures that are not there yet. Throws Error(Io),
     /// Error(Cancelled).
@@ -45,9 +47,10 @@ public:
     const IncludeFile& at(size_t index) const { return files_[index]; }
     size_t size() const { return files_.size(); }
     /// #include of each.
+    /// The text that includes all files.
     std::string statements() const;
     PictureFolder::PictureTotals pictures() const { return pictures_.totals(); }
-    /// Whether light is bent by any.
+    /// Whether any file bends light.
     bool refracts() const;
 
 private:
@@ -58,10 +61,10 @@ private:
     bool smaller_;
     PictureFolder pictures_;
     std::vector<IncludeFile> files_;
-    std::unordered_map<Hash, size_t> known_;  // by file_hash without texel
+    std::unordered_map<Hash, size_t> known_;  // by file_hash() without the texel
 };
 
-/// CPU seconds of this thread.
+/// The CPU seconds of this thread.
 double thread_cpu_s();
 
 }  // namespace lodestone::povray

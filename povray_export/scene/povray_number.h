@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Number: numbers as POV-Ray reads them, in any locale; never "inf" or "nan", which it cannot read.
+// POV-Ray number: numbers as POV-Ray reads them, in any locale; never "inf" or "nan".
 #pragma once
 
 #include "base/maths.h"
@@ -11,29 +11,33 @@
 
 namespace lodestone::povray {
 
+/// The usual digits of a number.
+/// Taste: a larger value writes longer files; POV-Ray's doubles hold 15, its meshes' floats 8.
 constexpr int kSignificantDigits = 10;
 
 /// Appends the shortest form with at most `digits` significant digits. Throws Error(Internal) for a
 /// value that is not finite.
 void append_number(std::string& out, double value, int digits = kSignificantDigits);
 void append_count(std::string& out, uint64_t value);
-/// <x,y,z>
+/// Appends <x,y,z>.
 void append_vector(std::string& out, const glm::dvec3& value, int digits = kSignificantDigits);
-/// matrix<...> of 12 numbers, as POV-Ray's transforms are written.
+/// Appends matrix<...> of 12 numbers, as POV-Ray's transforms are written.
 void append_matrix(std::string& out, const Affine& transform);
 
-/// Decimal lattice on which coordinates are written: what is tested on the lattice (equal points,
-/// zero areas) is exactly what POV-Ray reads.
+/// A decimal lattice on which coordinates are written: properties tested on the lattice (equal
+/// points, zero areas) are exactly those that POV-Ray reads.
 class DecimalLattice {
 public:
-    /// The coarsest decimal step that rounds by less than `precision`, but never so fine that
-    /// `largest` needs more than 15 digits (a float holds 8).
+    /// Takes the coarsest decimal step that rounds by less than `precision`, but never one so fine
+    /// that `largest` needs more than 15 digits (a float holds 8).
     DecimalLattice(double precision, double largest);
 
-    /// Throws Error(Internal) for a value that is not finite.
+    /// The nearest step. Throws Error(Internal) for a value that is not finite.
     int64_t round(double value) const;
     /// Writes at most kMostCharacters, and returns the end.
     char* write(char* at, int64_t value) const;
+    /// The most characters of a number.
+    /// Law: a sign, a point, 15 digits, and the zeros before them in the smallest meshes.
     static constexpr size_t kMostCharacters = 32;
 
 private:

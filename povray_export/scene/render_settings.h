@@ -9,7 +9,8 @@
 
 namespace lodestone::povray {
 
-/// All of scene.ini. `shading` is filled up; `transparent`: the picture has an alpha channel.
+/// The text of scene.ini. `shading` is filled up; `transparent` says that the picture has an alpha
+/// channel.
 std::string render_settings(const View& view, const Shading& shading, Antialiasing antialiasing,
                             bool transparent);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene head: what a scene says before its camera: settings of all of it, and the sky.
+// Scene head: the beginning of a scene: its settings and its sky.
 #pragma once
 
 #include "model/view.h"
@@ -10,16 +10,17 @@
 
 namespace lodestone::povray {
 
+/// The facts that the head tells or depends on.
 struct SceneHead {
     double pixel_error = 0;
     uint64_t occurrences = 0;
-    double times = 1;          // as large everything is written
-    bool refracts = false;     // some of it is glass
-    bool transparent = false;  // the film
-    glm::dvec3 eye{0.0};       // as it is written
+    double times = 1;          // factor by which everything is written larger
+    bool refracts = false;     // true: some of it is glass
+    bool transparent = false;  // true: the film is transparent
+    glm::dvec3 eye{0.0};       // the eye as it is written
 };
 
-/// `shading` is filled up; its bounces are those of light in this scene.
+/// The text of the head. `shading` is filled up; its bounces are those of light in this scene.
 std::string head_text(const SceneHead& head, const Shading& shading, const WrittenSky& sky);
 
 }  // namespace lodestone::povray

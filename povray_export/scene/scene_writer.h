@@ -13,46 +13,50 @@
 
 namespace lodestone::povray {
 
+/// The choices of an export.
 struct ExportOptions {
     std::filesystem::path folder;  // made when missing; its path may hold any characters
     Antialiasing antialiasing = Antialiasing::Final;
     Shading shading;
     bool false_color = false;  // flat colors by kind and LOD number (color_of), no lights
-    /// Linear color of each chosen occurrence instead, in the order of cut.chosen; empty: color_of.
+    /// The linear color of each chosen occurrence instead, in the order of cut.chosen; empty:
+    /// color_of().
     std::vector<glm::dvec3> colors{};
     // Without Environment objects (and all below them, and stand-ins for groups that hold them),
     // lights and world, on a transparent film: the picture's alpha says which pixels are covered.
     bool covered_only = false;
-    /// How far lights are approximated, in place of the view's Pixel Error; 0: all as they are.
+    /// The error up to which lights are approximated, in pixels, in place of the view's Pixel
+    /// Error; 0: all lights as they are.
     std::optional<double> light_error;
-    /// What classes of rays meet in place of parts of the cut, by its nodes; not in false colors,
-    /// nor where only what is covered counts.
+    /// The representations that classes of rays meet in place of parts of the cut, by its nodes;
+    /// not in false colors, nor where only covered pixels count.
     std::span<const choose::RayCut> rays{};
-    bool uvs =
-        true;  // texture coordinates where a texture uses them; false: textures are their means
+    /// Texture coordinates are written where a texture uses them; false: textures are their means.
+    bool uvs = true;
 };
 
+/// The result of an export.
 struct ExportReport {
-    uint64_t bytes = 0;    // of all files of this scene
-    uint64_t files = 0;    // of this scene, found again or written
+    uint64_t bytes = 0;    // bytes of all files of this scene
+    uint64_t files = 0;    // files of this scene, found again or written
     uint64_t written = 0;  // files not found again
     uint64_t representations = 0;
     uint64_t occurrences = 0;  // objects in the scene
-    uint64_t unseen = 0;       // of these that the camera does not see, but some other rays
+    uint64_t unseen = 0;       // objects that the camera does not see, but some other rays
     uint64_t lamps = 0;        // lights but suns
-    double lights_each = 0;    // lamps, and lights for several, that light a seen point, on average
-    double cpu_s = 0;          // of all threads
+    double lights_each = 0;  // lamps, and lights for several, that light a seen point, in the mean
+    double cpu_s = 0;        // sum over all threads
 };
 
 /// Writes scene.pov, scene.ini, r/<16 hex>.inc, one for every distinct representation, and the
-/// pictures they show as i/<16 hex>.png or .jpg; those that are there already are used as they are,
-/// for their name is their content. The same input gives the
-/// same bytes. Occurrences that cannot be drawn (flattened to a line, too small, not finite) are
-/// left out with a problem each; those flattened to a sheet get a thickness of 1/100000. `view` may
-/// be another one than the cut was made for: an overview of what another camera's picture uses.
-/// Throws Error(InvalidArgument) for a view that cannot be a picture, or colors that are not as
-/// many as the chosen occurrences, Error(Io) naming the file,
-/// Error(Cancelled). cost: 0.1-0.2 s CPU a million triangles written.
+/// pictures they show as i/<16 hex>.png or .jpg; files that are there already are used as they are,
+/// for their name is their content. The same input gives the same bytes. Occurrences that cannot be
+/// drawn (flattened to a line, too small, not finite) are left out with a problem each; those
+/// flattened to a sheet get a thickness of 1/100000. `view` may be another one than the cut was
+/// made for: an overview of the parts that another camera's picture uses. Throws
+/// Error(InvalidArgument) for a view that cannot be a picture, or colors that are not as many as
+/// the chosen occurrences, Error(Io) naming the file, Error(Cancelled). cost: 0.1-0.2 s CPU a
+/// million triangles written.
 ExportReport export_scene(const Model& model, const choose::Cut& cut, const View& view,
                           const ExportOptions& options, Problems& problems, const Job& job = {});
 

@@ -17,12 +17,12 @@ struct Shading {
     double shadow_error = 0;      // pixels; narrower penumbrae are sharp. 0: the Pixel Error
     double reflection_error = 0;  // 255ths; rays that add less are not followed. 0: 1
     double texture_error = 0;     // pixels; what a picture may be blurred by. 0: nothing
-    int bounces = 0;              // of light from surface to surface. 0: direct light only
-    int bounce_rays = 0;          // by which light of other surfaces is gathered
-    double bounce_error = 0;      // how far what is gathered is used again, 0 ... 1
+    int bounces = 0;              // bounces of light from surface to surface; 0: direct light only
+    int bounce_rays = 0;          // rays by which light of other surfaces is gathered
+    double bounce_error = 0;      // how far gathered light is used again, 0 ... 1
 };
 
-/// The same with every count and threshold filled in.
+/// The shading with every count and threshold filled in.
 Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixel_error);
 
 }  // namespace lodestone::povray

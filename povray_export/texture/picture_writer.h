@@ -14,21 +14,21 @@
 
 namespace lodestone::povray {
 
-/// What of a texture a pigment shows.
+/// The part of a texture that a pigment shows.
 enum class PigmentContent : uint8_t {
     Color = 0,   // its color; transparency is not in it
     Number = 1,  // its number as gray, clamped to 0...1
-    Filter = 2,  // its color, of all that goes through it
-    Height = 3,  // of a normal map: height_map()
+    Filter = 2,  // its color as a filter of all that goes through it
+    Height = 3,  // the heights of a normal map: height_map()
 };
 
-/// Texture coordinates a surface uses. What a picture shows outside 0...1 costs POV-Ray time when
-/// it is no plain repetition, so it is written only where it can be seen.
+/// The texture coordinates that a surface uses. A picture outside 0...1 costs POV-Ray time when it
+/// is no plain repetition, so it is written only where it can be seen.
 struct UvRange {
     glm::dvec2 low{0.0};
     glm::dvec2 high{1.0};
-    double texel =
-        0;  // what one may cover, in texture coordinates: larger pictures are made smaller
+    /// What one texel may cover, in texture coordinates: larger pictures are made smaller.
+    double texel = 0;
 };
 
 /// The folder i/ below a scene's folder; all threads of one export share it.
@@ -46,7 +46,7 @@ public:
         uint64_t bytes = 0;
         uint64_t written = 0;
     };
-    PictureTotals totals() const;  // when no thread adds any more
+    PictureTotals totals() const;  // call when no thread adds any more
 
 private:
     std::filesystem::path folder_;
@@ -54,41 +54,41 @@ private:
     std::map<std::string, bool> names_;  // true: written now
 };
 
-/// Collects the pictures that the text of one representation shows. Not for several threads.
+/// A collector of the pictures that the text of one representation shows. It serves one thread.
 class PictureWriter {
 public:
     /// The inside of pigment{...}: a function of texture coordinates, so it must stand below a
     /// uv_mapping. Throws Error(Internal) for a picture that is not resident.
     std::string pigment(const Texture& texture, PigmentContent content, const UvRange& range);
 
-    /// `png "i/..." gamma ...` for a pattern of its own, of a picture halved so often. Throws as
-    /// above.
+    /// The text `png "i/..." gamma ...` for a pattern of its own, of a picture halved so often.
+    /// Throws Error(Internal) for a picture that is not resident.
     std::string file_reference(const Texture& texture, PigmentContent content, int halvings = 0);
 
-    /// Comments that name all files, then a guarded declaration of every image, so that POV-Ray
-    /// loads one that several representations show once; "" when there is none.
+    /// The comments that name all files, then a guarded declaration of every image, so that POV-Ray
+    /// loads an image once that several representations show; "" when there is none.
     std::string declarations() const;
 
-    /// Writes the files that are not there yet (a name is its content).
-    /// Throws Error(Io), Error(BadFile).
+    /// Writes the files that are not there yet (a name is its content). Throws Error(Io),
+    /// Error(BadFile).
     void write(PictureFolder& folder) const;
 
 private:
     struct PictureFile {
         Texture texture;
         PigmentContent content = PigmentContent::Color;
-        bool as_is = false;  // the picture's own bytes
+        bool as_is = false;  // true: the picture's own bytes
         int halvings = 0;
     };
 
     std::string file_of(const Texture& texture, PigmentContent content, int halvings);
 
     std::map<std::string, PictureFile> files_;     // by name
-    std::map<std::string, std::string> declared_;  // identifier: inside of the pigment
+    std::map<std::string, std::string> declared_;  // by identifier: the inside of the pigment
 };
 
-/// How often a picture may be halved before one of its texels covers more than `texel` in texture
-/// coordinates. 0 where each texel is to be seen.
+/// The number of times a picture may be halved before one of its texels covers more than `texel` in
+/// texture coordinates; 0 where each texel is to be seen.
 int halvings_of(const Texture& texture, double texel);
 
 /// The largest number of a picture that can hold more than 1 (EXR); else 1. Throws Error(BadFile).

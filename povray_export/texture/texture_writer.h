@@ -12,26 +12,27 @@
 
 namespace lodestone::povray {
 
-/// What of a surface its texture's text depends on.
+/// The facts about a surface that its texture's text depends on.
 struct TexturedSurface {
     bool uvs = false;  // without texture coordinates every texture is its mean
     UvRange range;
-    glm::dvec4 color{1.0};  // of its vertices, linear; counts where the material uses it
-    bool flat = false;      // in one plane with to_uv; bumps are shown on such surfaces only
+    glm::dvec4 color{1.0};  // color of its vertices, linear; counts where the material uses it
+    bool flat = false;      // true: in one plane with to_uv; only there bumps are shown
     Affine to_uv;           // position to (u, v, height above the plane), where flat
 };
 
-/// texture{...}. Shares (alpha, mixtures, maps of roughness and metallic) are weighted averages of
-/// whole textures, which is what they mean; base color, emission and the white reflection of the
-/// sky are averaged at two or three times their strength where one pigment cannot be all of them.
-/// Values out of range are clamped, so that any material gives text that POV-Ray reads.
+/// The text texture{...}. Shares (alpha, mixtures, maps of roughness and metallic) are weighted
+/// averages of whole textures, which is what they mean; base color, emission and the white
+/// reflection of the sky are averaged at two or three times their strength where one pigment cannot
+/// be all of them. Values out of range are clamped, so that any material gives text that POV-Ray
+/// reads.
 std::string texture_text(const Material& material, const TexturedSurface& surface,
                          PictureWriter& pictures);
 
-/// Whether it shows more of a flat surface.
+/// Whether the material shows more on a flat surface, because it has bumps.
 bool bumpy(const Material& material);
 
-/// Index of refraction of a material that light goes through; 0 for all others.
+/// The index of refraction of a material that light goes through; 0 for all others.
 double refraction_of(const Material& material);
 
 }  // namespace lodestone::povray
