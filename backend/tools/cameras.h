@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras: what --camera, --eye, --look-at, --angle-deg and --size mean, for every verb that looks.
+// Cameras: the view of --camera, --eye, --look-at, --angle-deg and --size, for every verb that
+// looks.
 #pragma once
 
 #include "lodestone/lodestone.h"
@@ -11,13 +12,13 @@
 
 namespace lodestone::tools {
 
-/// --size, if it is given. Throws UsageError.
+/// The width and height of --size, if it is given. Throws UsageError.
 std::optional<std::pair<int, int>> size_of(const CommandArguments& arguments);
 
-/// The camera at --eye, else the one that --camera names, else the model's first, else (`frame`)
-/// one that sees everything. Without --size the picture is 640 pixels wide in the camera's shape;
-/// with one, the camera's width fills the picture's. The view points to `camera`. Throws
-/// UsageError.
+/// The view of the camera at --eye, else of the one that --camera names, else of the model's first,
+/// else (`frame`) of one that sees everything. Without --size the picture is 640 pixels wide in the
+/// camera's shape; with it, the camera's width fills the picture's. The view points to `camera`.
+/// Throws UsageError.
 lds_view view_of(const CommandArguments& arguments, lds_model* model, bool frame,
                  lds_camera& camera);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Report: what a verb found, as values in the order they are to be written; --json saves it.
+// Report: the values that a verb found, in the order they are to be written; --json saves them.
 #pragma once
 
 #include "lodestone/lodestone.h"
@@ -17,7 +17,7 @@ class ReportValue;
 using List = std::vector<ReportValue>;
 using Fields = std::vector<std::pair<std::string, ReportValue>>;  // an object; its order is kept
 
-/// Anything JSON can hold.
+/// A value that JSON can hold.
 class ReportValue {
 public:
     using Held = std::variant<std::nullptr_t, bool, uint64_t, double, std::string, List, Fields>;

@@ -30,7 +30,7 @@ struct DestroyCut {
 using ModelHandle = std::unique_ptr<lds_model, DestroyModel>;
 using CutHandle = std::unique_ptr<lds_cut, DestroyCut>;
 
-/// Options as they are when nothing is asked for. Throws Failure.
+/// The options as they are when nothing is asked for. Throws CallFailure.
 template <typename Options>
 Options usual(lds_status (*fill)(Options*)) {
     Options options{};
@@ -39,9 +39,11 @@ Options usual(lds_status (*fill)(Options*)) {
     return options;
 }
 
+/// Reads a model or store. Throws CallFailure.
 ModelHandle read_model(const std::string& path);
 
-/// Draws a bar on stderr while it lives (only on a terminal) and passes Ctrl-C to the job.
+/// A progress bar: it is drawn on stderr while it lives (only on a terminal), and passes Ctrl-C to
+/// the job.
 class ProgressBar {
 public:
     explicit ProgressBar(const char* what);

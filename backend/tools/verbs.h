@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Verbs: what `lodestone VERB` does; one function each, returning the exit code.
+// Verbs: the commands `lodestone VERB`; one function each, returning the exit code.
 #pragma once
 
 #include "arguments.h"
@@ -9,17 +9,18 @@
 
 namespace lodestone::tools {
 
+/// One verb, for parsing and for help.
 struct CommandVerb {
     const char* name;
-    const char* usage;  // after the verb
+    const char* usage;  // the words after the verb
     const char* text;   // one line
     const char* details;
-    size_t positional;  // how many it takes
+    size_t positional;  // words that it takes
     std::vector<OptionHelp> options;
     int (*run)(const CommandArguments&);
 };
 
-/// In the order a user meets them.
+/// All verbs, in the order a user meets them.
 const std::vector<CommandVerb>& verbs();
 
 int run_measure(const CommandArguments& arguments);
