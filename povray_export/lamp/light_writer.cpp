@@ -11,19 +11,28 @@
 namespace lodestone::povray {
 namespace {
 
+/// Law: degrees of a radian.
 constexpr double kDegrees = 180 / kPi;
-// POV-Ray's fading is 2 / (1 + (d/e)^2): with a tiny e it is an exact 1/d^2 times 2 e^2.
+// The radius of a light without one: POV-Ray's fading is 2 / (1 + (d/e)^2), so a tiny e makes it an
+// exact 1/d^2 times 2 e^2.
+// Taste: a larger value dims what is nearer than it.
 constexpr double kNear = 1e-3;
-constexpr double kWideSun = 0.2;      // half angle above which the fewest first rays miss shadows
-constexpr int kMostRays = 129;        // along an edge
-constexpr double kNarrowSun = 0.009;  // half angle of a sun whose penumbra is a few pixels
+/// The half angle in radians above which the fewest first rays miss shadows.
+/// Taste: a larger value loses thin shadows of wide suns.
+constexpr double kWideSun = 0.2;
+/// The rays along an edge.
+/// Taste: a larger value makes the softest penumbrae smoother, for time that grows with its square.
+constexpr int kMostRays = 129;
+/// The half angle in radians of a sun whose penumbra is a few pixels.
+/// Taste: twice the real sun's; a larger value casts fewer first rays for more suns.
+constexpr double kNarrowSun = 0.009;
 
 glm::dvec3 perpendicular(const glm::dvec3& unit) {
     const glm::dvec3 other = std::abs(unit.z) < 0.7 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
     return glm::normalize(glm::cross(unit, other));
 }
 
-/// Rays along an edge: 2^n + 1, for POV-Ray refines by halving.
+/// A grid of rays along both edges: 2^n + 1, for POV-Ray refines by halving.
 struct RayGrid {
     int u = 1;
     int v = 1;
@@ -46,9 +55,9 @@ public:
         // Cycles spreads the power over the disk tan(angle / 2) at distance 1.
         const double half = std::clamp(light_.angle / 2, 0.0, 1.5);
         const double r = std::tan(half);
-        // The mean cosine between the middle and the disk: what a surface receives less, as long as
-        // no part of the disk is below its horizon. Its own light for each part (area_illumination)
-        // shows only where some is, and shades every point 81 times.
+        // The mean cosine between the middle and the disk is the light that a surface receives
+        // less, as long as no part of the disk is below its horizon. An own light for each part
+        // (area_illumination) shows only where some part is below, and shades every point 81 times.
         const double mean = r > 1e-4 ? 2 * (std::sqrt(1 + r * r) - 1) / (r * r) : 1;
         open(bound.center - way * reach, color * mean / kPi);
         out_ += " parallel point_at ";
@@ -132,7 +141,7 @@ private:
         append_vector(out_, color, 6);
     }
 
-    /// `color` / (d^2 + radius^2) at distance d.
+    /// Appends the fading: `color` / (d^2 + radius^2) at distance d.
     void fading(const glm::dvec3& from, const glm::dvec3& color, double radius) {
         const double e = std::max(radius, kNear);
         open(from, color / (2 * e * e));
@@ -140,7 +149,7 @@ private:
         append_number(out_, e);
     }
 
-    /// From 1 within `inner` to 0 at `outer` (radians), times cos^tightness.
+    /// Appends a cone: from 1 within `inner` to 0 at `outer` (radians), times cos^tightness.
     void append_cone(double inner, double outer, double tightness) {
         out_ += " spotlight point_at ";
         append_vector(out_, light_.position + glm::normalize(light_.direction), 15);
@@ -152,11 +161,12 @@ private:
         append_number(out_, tightness);
     }
 
-    /// Of the usual 17 along the edge of a lamp, and others in proportion: 2^n + 1, 3 or more.
+    /// The rays along an edge, for the usual number of 17 along the edge of a lamp; others in
+    /// proportion: 2^n + 1, 3 or more.
     int rays_of(int usual) const { return std::max((usual - 1) * (rays_ - 1) / 16, 2) + 1; }
 
-    /// POV-Ray puts its outermost rays on the edges: the middles of n equal parts are what is
-    /// wanted.
+    /// Appends the grid. POV-Ray puts its outermost rays on the edges, but the middles of n equal
+    /// parts are wanted.
     void append_grid(const glm::dvec3& u, const glm::dvec3& v, RayGrid grid) {
         grid.u = std::min(rays_of(grid.u), most_);
         grid.v = std::min(rays_of(grid.v), most_);
@@ -179,12 +189,15 @@ private:
         out_ += " circular orient";
     }
 
-    /// Cycles lets an area emit cos x (1 - tan x / tan s) / (1 - s / tan s) within s, half the
-    /// spread. Here: one smooth cone, its tightness and strength fitted to that over the sphere.
+    /// The cone of a light with a spread. Cycles lets an area emit cos x (1 - tan x / tan s) / (1 -
+    /// s / tan s) within s, half the spread. Here it is one smooth cone, whose tightness and
+    /// strength are fitted to that over the sphere.
     SpotCone spread_cone() const {
         const double s = light_.spread / 2;
         if (!(s > 0) || s > kPi / 2 - 0.01)
             return {};
+        // Steps of the integral over the cone.
+        // Taste: a larger value fits better than anybody can see, in more time.
         constexpr int kSteps = 64;
         const double norm = s < 1e-2 ? 3 / (s * s) : 1 / (1 - s / std::tan(s));
         const double low = std::cos(s);
@@ -214,7 +227,8 @@ private:
     }
 
     void close() { out_ += light_.shadow || conical() ? "}\n" : " shadowless}\n"; }
-    // POV-Ray's shadowless is a kind of light of its own, which has no cone.
+    // Whether the light has a cone; POV-Ray's shadowless is a kind of light of its own, which has
+    // none.
     bool conical() const {
         return light_.kind == LightKind::Spot || light_.kind == LightKind::Area;
     }
@@ -223,7 +237,7 @@ private:
     const Light& light_;
     bool soft_;
     int rays_ = 17;
-    int most_ = 3;  // along an edge
+    int most_ = 3;  // rays along an edge
     int start_ = 0;
 };
 

@@ -6,10 +6,16 @@
 namespace lodestone::povray {
 
 std::string radiosity_text(const Shading& shading, bool sky) {
-    // Before the picture it is gathered on a grid of this share of its width, then ever finer ones.
+    // Light is gathered on a grid of this share of the picture's width first, then on ever finer
+    // ones.
+    // Taste: POV-Ray's own default; a larger value loses small patches of light.
     constexpr double kFirstGrid = 0.08;
+    // The last grid before the picture.
+    // Taste: a larger value leaves more to the picture, which then depends on the order of threads.
     constexpr double kLastGrid = 0.02;
-    constexpr uint64_t kTogether = 15;  // gatherings that are interpolated; more are smoother
+    // Gatherings that are interpolated.
+    // Taste: a larger value is smoother and blurs the light in corners.
+    constexpr uint64_t kTogether = 15;
     std::string out = "radiosity{pretrace_start ";
     append_number(out, kFirstGrid, 4);
     out += " pretrace_end ";

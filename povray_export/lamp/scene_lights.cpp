@@ -10,8 +10,12 @@
 namespace lodestone::povray {
 
 void SceneLights::append(std::string& out, Light light) const {
-    constexpr double kLeast = 0.25;  // pixels; antialiasing shows no less
-    constexpr double kPoint = 1e-7;  // of an area's edges, which say where it shines
+    // The pixels of the narrowest penumbra that shows.
+    // Taste: antialiasing shows no less; a larger value draws more shadows sharp.
+    constexpr double kLeast = 0.25;
+    // The factor on an area's edges, which still say where it shines.
+    // Taste: any size that no pixel can tell will do.
+    constexpr double kPoint = 1e-7;
     const double widest = light::widest_penumbra(light, view_, occluders_);
     const double step = std::max(kLeast, shading_.shadow_error);
     if (widest <= step) {
@@ -20,7 +24,7 @@ void SceneLights::append(std::string& out, Light light) const {
         light.edge_v *= kPoint;
     }
     LightSampling sampling = sampling_;
-    if (shading_.shadow_error > 0)  // else everything is as it is
+    if (shading_.shadow_error > 0)  // else every light is as it is
         sampling.steps = widest / step;
     append_light(out, magnified(light, times_), bound_, sampling, problems_);
 }

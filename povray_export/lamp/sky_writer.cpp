@@ -13,8 +13,9 @@
 namespace lodestone::povray {
 namespace {
 
-// Part of the brightest that a light of the sky has at least: fainter ones cast rays at every point
-// for what no display shows, and are what is left of rounding.
+// The share of the brightest light of the sky that a light has at least: fainter ones cast rays at
+// every point for light that no display shows, and come from rounding.
+// Taste: half of a step of 8 bits; a larger value loses faint parts of the sky.
 constexpr double kFaintest = 2e-3;
 
 const char* keyword_of(PictureFormat format) {
@@ -29,7 +30,7 @@ const char* keyword_of(PictureFormat format) {
     return "exr";
 }
 
-/// pigment{...} of a ball around the origin, or of a sky sphere.
+/// The text pigment{...} of a ball around the origin, or of a sky sphere.
 std::string pigment_of(const World& world, const std::string& file) {
     const Picture& picture = *world.environment;
     std::string out = "pigment{image_map{";
@@ -64,7 +65,9 @@ WrittenSky write_sky(const World& world, const SkySampling& sampling,
     if (!world.environment)
         return sky;
     const Picture& picture = *world.environment;
-    constexpr size_t kFewest = 12;  // of which the mean is taken
+    // Lights whose mean is taken where none is to be written.
+    // Taste: a larger value knows the mean light better, for time once a picture.
+    constexpr size_t kFewest = 12;
     light::EnvironmentLights found;
     try {
         found = light::environment_lights(world, sampling.lights > 0 ? sampling.lights : kFewest);
@@ -107,7 +110,9 @@ std::string sky_sphere(const WrittenSky& sky) {
 }
 
 std::string sky_ball(const WrittenSky& sky, const glm::dvec3& eye) {
-    constexpr double kFar = 5e6;  // POV-Ray sees as far as 1e7
+    // The radius of the ball around the eye.
+    // Law: POV-Ray sees as far as 1e7.
+    constexpr double kFar = 5e6;
     std::string out = "sphere{0,1 hollow no_shadow no_radiosity texture{" + sky.pigment +
                       "finish{ambient 0 diffuse 0 emission rgb ";
     append_vector(out, sky.strength, 6);

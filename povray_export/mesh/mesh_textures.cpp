@@ -18,12 +18,15 @@
 namespace lodestone::povray {
 namespace {
 
+/// The look of a slot that is not found yet.
+/// Law: the largest number of 16 bits.
 constexpr uint16_t kUnknown = 0xffff;
 
-// A picture is baked for every distinct hue of the paint over it.
+// Hues of the paint over a picture; a picture is baked for every distinct hue.
+// Taste: a larger value shows more hues, for a picture file each.
 constexpr size_t kMostHues = 8;
 
-/// RGBA in display encoding, 16 bits each: exact for colors of 8 bits.
+/// A color as RGBA in display encoding, 16 bits each: exact for colors of 8 bits.
 using Key = uint64_t;
 
 Key key_of(const glm::vec4& color, bool alpha) {
@@ -68,8 +71,8 @@ Key hue_of(Key key) {
     return rounded(key_of(glm::vec4(color), false), 257);
 }
 
-/// What a step of 1 in texture coordinates covers of a triangle, where it is most: metres. Infinite
-/// where all of it shows one place or one line of the picture.
+/// The metres that a step of 1 in texture coordinates covers of a triangle, where it covers most.
+/// Infinite where all of the triangle shows one place or one line of the picture.
 double metres_of_uv(const Mesh& mesh, size_t triangle) {
     const Triangle& t = mesh.triangles[triangle];
     const glm::dvec3 a = glm::dvec3(mesh.positions[t.y]) - glm::dvec3(mesh.positions[t.x]);
@@ -179,8 +182,11 @@ void MeshTextures::find_ranges() {
 }
 
 void MeshTextures::find_texels(double metres) {
-    constexpr double kShown = 0.999;  // of a slot's area
-    constexpr int kLeast = -64;       // exponents of what a texture coordinate of 1 covers
+    // The share of a slot's area that must see its texels as finely as asked.
+    // Taste: a larger value keeps pictures large for single stretched triangles.
+    constexpr double kShown = 0.999;
+    // Law: the table of exponents of metres that a texture coordinate covers goes from -64 to 64.
+    constexpr int kLeast = -64;
     std::vector<std::array<double, 129>> areas(slots_.size());
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
         check_job_sometimes(i);
@@ -233,7 +239,8 @@ void MeshTextures::find_planes() {
     }
 }
 
-/// False: a plane too many. Triangles without an area, here or in the picture, have none.
+/// Finds a triangle's plane; false: a plane too many. Triangles without an area, here or in the
+/// picture, have none.
 bool MeshTextures::plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane) const {
     const Triangle& t = mesh_.triangles[triangle];
     const glm::dvec3 at[] = {glm::dvec3(mesh_.positions[t.x]), glm::dvec3(mesh_.positions[t.y]),
@@ -243,7 +250,7 @@ bool MeshTextures::plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane)
     const auto fits = [&](const Affine& to_uv) {
         for (int i = 0; i < 3; ++i) {
             const glm::dvec3 there = to_uv(at[i]);
-            // Within a tenth of the texels of a picture of 1000, and of its plane as wide.
+            // The limit is a tenth of the texels of a picture of 1000, and of its plane as wide.
             if (!(std::abs(there.x - uv[i].x) < 1e-4 && std::abs(there.y - uv[i].y) < 1e-4))
                 return false;
         }
@@ -263,7 +270,7 @@ bool MeshTextures::plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane)
     const double square = glm::dot(normal, normal);
     const glm::dvec2 ua = uv[1] - uv[0];
     const glm::dvec2 ub = uv[2] - uv[0];
-    // Gradients of u and v in the plane, and the height above it.
+    // The gradients of u and v in the plane, and the height above it.
     const glm::dvec3 across = glm::cross(b, normal) / square;
     const glm::dvec3 along = glm::cross(normal, a) / square;
     const glm::dvec3 rows[] = {ua.x * across + ub.x * along, ua.y * across + ub.y * along,
@@ -296,7 +303,7 @@ std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
         check_job_sometimes(i);
         keys[i] = key_of(mesh_.colors[i], alpha);
     }
-    // First what 8 bits hold, then coarser until it fits.
+    // Colors are first rounded to 8 bits, then coarser until they are few enough.
     for (uint64_t step = 1;; step = step == 1 ? 257 : step + std::max<uint64_t>(257, step / 4)) {
         std::unordered_set<Key> distinct;
         for (size_t i = 0; i < keys.size() && distinct.size() <= kMost; ++i) {
@@ -309,7 +316,7 @@ std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
             key = rounded(key, step);
         break;
     }
-    // Over a picture, many hues become their mean: only brightness varies without another picture.
+    // Many hues over a picture become their mean: only brightness varies without another picture.
     if (pictured) {
         std::set<Key> hues;
         glm::dvec3 sum(0.0);

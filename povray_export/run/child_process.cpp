@@ -21,7 +21,7 @@ struct alignas(16) ChildStack {
     std::array<char, 65536> bytes;
 };
 
-/// What the child needs: all of it made by the parent, since the child may not allocate.
+/// The data of the child: all of it is made by the parent, since the child may not allocate.
 struct SpawnPlan {
     const char* program = nullptr;
     char* const* arguments = nullptr;
@@ -50,10 +50,10 @@ void close_others() {
         close(file);
 }
 
-/// 0 once the standard files are as the program is to find them, else errno.
+/// Prepares the standard files as the program is to find them; returns 0, else errno.
 int prepare_files(int output) {
     const int nothing = open("/dev/null", O_RDONLY);
-    // Above 2 first: the host may have closed its standard files, so that either may be 0...2.
+    // Copies are above 2: the host may have closed its standard files, so that either may be 0...2.
     const int input = nothing < 0 ? -1 : fcntl(nothing, F_DUPFD, 3);
     const int high = fcntl(output, F_DUPFD, 3);
     if (input < 0 || high < 0 || dup2(input, 0) < 0 || dup2(high, 1) < 0 || dup2(high, 2) < 0)
@@ -66,7 +66,7 @@ int prepare_files(int output) {
 int start(const SpawnPlan& plan) {
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0)
         return errno;
-    if (getppid() != plan.parent)  // it died before we asked to be told
+    if (getppid() != plan.parent)  // the parent died before we asked to be told
         return ESRCH;
     if (setpgid(0, 0) != 0 || chdir(plan.folder) != 0)
         return errno;
@@ -76,7 +76,8 @@ int start(const SpawnPlan& plan) {
     struct sigaction ordinary {};
     ordinary.sa_handler = SIG_DFL;
     for (int signal = 1; signal < NSIG; ++signal)
-        sigaction(signal, &ordinary, nullptr);  // refused for some, which nobody can change
+        // Refused for some signals, which nobody can change.
+        sigaction(signal, &ordinary, nullptr);
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -101,9 +102,9 @@ pid_t spawn(const SpawnOptions& options) {
                    options.folder.c_str(),  options.output,   getpid()};
     const auto stack = std::make_unique<ChildStack>();
 
-    // As posix_spawn does it, which cannot ask for the death signal: sharing memory until exec
-    // costs nothing and fails less often than fork() in a process of many gigabytes. No handler of
-    // the host may run in the child.
+    // The child is made like posix_spawn does it, which cannot ask for the death signal: sharing
+    // memory until exec costs nothing and fails less often than fork() in a process of many
+    // gigabytes. No handler of the host may run in the child.
     sigset_t all;
     sigset_t before;
     sigfillset(&all);

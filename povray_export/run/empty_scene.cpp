@@ -10,7 +10,7 @@
 namespace lodestone::povray {
 namespace {
 
-/// A folder of our own, gone with what is in it when it is no longer needed.
+/// A folder of our own, which is removed with its content when it is no longer needed.
 struct TemporaryFolder {
     TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "lodestone-XXXXXX").string();

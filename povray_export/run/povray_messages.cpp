@@ -8,10 +8,18 @@
 namespace lodestone::povray {
 namespace {
 
+/// The bytes of a line that are kept.
+/// Taste: POV-Ray's lines are shorter; a larger value lets garbage take more memory.
 constexpr size_t kLongestLine = 4096;
+/// The bytes of text that are kept, the last ones.
+/// Taste: a larger value shows more warnings of a broken scene.
 constexpr size_t kLongestText = 8192;
-// POV-Ray wraps at 80: before a word, whose space then begins the next line, or inside a long one.
+// The columns after which a line goes on in the next one: POV-Ray wraps at 80, before a word, whose
+// space then begins the next line, or inside a long one.
+// Law: POV-Ray's console width.
 constexpr size_t kConsoleWidth = 79;
+/// A word that is longer may be wrapped inside.
+/// Taste: a larger value joins more lines that begin with a space.
 constexpr size_t kLongestWord = 30;
 
 bool contains(const std::string& text, std::string_view part) {
@@ -32,7 +40,8 @@ Number number_after(const std::string& text, std::string_view label, Number othe
     return std::from_chars(begin, end, value).ec == std::errc() ? value : otherwise;
 }
 
-/// Its own words for trouble; the rest is a banner and statistics.
+/// Whether a line is about trouble, by POV-Ray's own words; other lines are a banner and
+/// statistics.
 bool trouble(const std::string& text) {
     // Nobody has to have a configuration file, and a shifted lens is what we asked for.
     if (contains(text, "configuration file") || contains(text, "not perpendicular"))

@@ -25,9 +25,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int kTickMs = 20;          // how often memory and the job are looked at
-constexpr double kGraceS = 0.5;      // between asking POV-Ray to stop and stopping it
-constexpr double kParsePart = 0.15;  // of the progress bar
+/// Milliseconds between two looks at memory and the job.
+/// Taste: a larger value misses peaks of memory and is slower to cancel.
+constexpr int kTickMs = 20;
+/// Seconds between asking POV-Ray to stop and stopping it.
+/// Taste: a larger value waits longer for POV-Ray to save and clean up.
+constexpr double kGraceS = 0.5;
+/// The share of the progress bar for parsing.
+/// Taste: a larger value makes the bar jump in scenes that are parsed at once.
+constexpr double kParsePart = 0.15;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -44,8 +50,9 @@ bool is_program(const std::string& path) {
            access(path.c_str(), X_OK) == 0;
 }
 
-/// Ends with the output closed and the process reaped, whatever happens. Made, watched and
-/// destroyed on one thread: POV-Ray is killed when that thread ends.
+/// The running process. Its end is certain, with the output closed and the process reaped, whatever
+/// happens. It is made, watched and destroyed on one thread: POV-Ray is killed when that thread
+/// ends.
 class PovrayProcess {
 public:
     PovrayProcess(const std::string& program, const std::filesystem::path& folder,
@@ -112,7 +119,7 @@ public:
         return process_ < 0;
     }
 
-    /// Largest memory so far, or 0 when it is not known any more.
+    /// The largest memory so far in bytes, or 0 when it is not known any more.
     uint64_t peak_bytes() const {
         if (process_ < 0)
             return 0;
@@ -140,7 +147,7 @@ public:
         while (seconds_since(asked) < kGraceS) {
             read_text(unheard);  // or it would wait for us with a full pipe
             if (ended()) {
-                kill(-group, SIGKILL);  // what a wrapper script may have started and left
+                kill(-group, SIGKILL);  // a wrapper script may have left others
                 return;
             }
             usleep(5000);
@@ -159,7 +166,7 @@ private:
     int output_ = -1;
 };
 
-/// Names of one run inside the folder; what is left under them when it ends is removed.
+/// The names of one run inside the folder; files left under them when it ends are removed.
 struct TemporaryPicture {
     explicit TemporaryPicture(const std::filesystem::path& folder, const char* extension) {
         static std::atomic<uint32_t> counter{0};
@@ -219,7 +226,7 @@ std::vector<std::string> arguments_of(const RunOptions& options, const std::stri
 
 void show_progress(const PovrayMessages& messages, const Job& job) {
     if (messages.pixels == 0) {
-        // How much there is to parse is not known: half of this part is a million tokens.
+        // The number of tokens to parse is not known: half of this part is a million of them.
         const auto tokens = static_cast<double>(messages.parsed_tokens);
         job.progress(kParsePart * tokens / (tokens + 1e6));
         return;

@@ -10,8 +10,9 @@
 namespace lodestone::povray {
 namespace {
 
-/// POV-Ray's lens has a quarter of its aperture as radius (measured), and is in focus where rays
-/// are as long as the one to focal_point: a plane across the view, in units of `direction`.
+/// Appends the blur of a lens. POV-Ray's lens has a quarter of its aperture as radius (measured),
+/// and is in focus where rays are as long as the one to focal_point: a plane across the view, in
+/// units of `direction`.
 void append_blur(std::string& out, const Camera& camera, Antialiasing antialiasing) {
     const glm::dvec3 ahead = glm::normalize(glm::cross(camera.up, camera.right));
     const double depth = std::abs(glm::dot(ahead, camera.direction));

@@ -16,7 +16,8 @@
 namespace lodestone::povray {
 namespace {
 
-/// As much of an include file as can name its pictures.
+/// The bytes at the beginning of an include file that can name its pictures.
+/// Taste: a larger value reads more of every file that is found again.
 constexpr size_t kBeginning = size_t{16} << 10u;
 std::string beginning_of(const std::filesystem::path& path) {
     std::string text(kBeginning, ' ');
@@ -26,12 +27,16 @@ std::string beginning_of(const std::filesystem::path& path) {
     return text;
 }
 
-/// What a file takes beside its triangles, as many of them as take as long.
+/// The time that a file takes beside its triangles, in triangles.
+/// Taste: about what opening and naming a file cost; a larger value wakes threads for fewer files.
 constexpr uint64_t kTrianglesOfFile = 1000;
-/// Below so many (3 ms) one thread writes them: waking others takes .3 ms.
+/// Fewer triangles (3 ms) are written by one thread: waking others takes 0.3 ms.
+/// Taste: a larger value writes middle scenes on one thread.
 constexpr uint64_t kFewTriangles = 50'000;
 
 int exponent_of(double texel) {
+    // The largest exponent of a texel's size, in both directions.
+    // Taste: beyond it nothing can be told apart.
     constexpr int kMost = 60;
     return texel > 0 && std::isfinite(texel) ? std::clamp(std::ilogb(texel), -kMost, kMost)
                                              : -kMost;
@@ -57,7 +62,7 @@ size_t IncludeFiles::add(const Representation& representation,
 }
 
 void IncludeFiles::note_texel(size_t index, double texel) {
-    // Copies that are textured share a file for their nearest
+    // Copies that are textured share a file for the nearest of them.
     files_[index].texel = std::min(files_[index].texel, texel);
 }
 

@@ -9,9 +9,12 @@
 namespace lodestone::povray {
 namespace {
 
-// What is flattened to a sheet gets this part of its stretch as thickness: POV-Ray loses rays below
-// 1e-7, and takes columns below 1e-10 for a mistake that it corrects to 1.
+// An object that is flattened to a sheet gets this part of its stretch as thickness.
+// Taste: POV-Ray loses rays below 1e-7, and takes columns below 1e-10 for a mistake that it
+// corrects to 1; a larger value shows the edges of sheets.
 constexpr double kSheet = 1e-5;
+/// The smallest stretch of a transform that shows anything.
+/// Law: POV-Ray takes columns below 1e-10 for a mistake; this is ten times that.
 constexpr double kSmallestStretch = 1e-9;
 
 }  // namespace
@@ -19,8 +22,8 @@ constexpr double kSmallestStretch = 1e-9;
 bool make_invertible(Affine& transform) {
     if (!transform.finite())
         return false;
-    // The smallest stretch is the volume over the other two, whose product is less than half of
-    // this
+    // The smallest stretch is the volume over the other two, whose product is less than half of the
+    // sum of squares.
     const double squares = glm::dot(transform.linear[0], transform.linear[0]) +
                            glm::dot(transform.linear[1], transform.linear[1]) +
                            glm::dot(transform.linear[2], transform.linear[2]);
@@ -29,7 +32,7 @@ bool make_invertible(Affine& transform) {
         return true;
     const SymmetricEigen eigen =
         eigen_symmetric(glm::transpose(transform.linear) * transform.linear);
-    // The square's eigenvalues have lost half of the digits: only its axes are used.
+    // The eigenvalues of the square have lost half of the digits: only its axes are used.
     const glm::dvec3 along = transform.linear * eigen.axes[0];
     const glm::dvec3 normal = glm::cross(along, transform.linear * eigen.axes[1]);
     const double length = glm::length(along);

@@ -10,7 +10,8 @@
 namespace lodestone::povray {
 namespace {
 
-// POV-Ray's rays end at 1e7, its bounding boxes are of floats.
+// The largest extent of a magnified scene.
+// Law: POV-Ray's rays end at 1e7, and its bounding boxes are of floats.
 constexpr double kLargest = 1e5;
 
 }  // namespace

@@ -12,7 +12,8 @@
 namespace lodestone::povray {
 namespace {
 
-/// "00" "01" ... "99"
+/// The pairs of digits "00" "01" ... "99".
+/// Law: two digits a step.
 constexpr std::array<char, 200> kPairs = [] {
     std::array<char, 200> pairs{};
     for (size_t i = 0; i < 100; ++i) {
@@ -22,7 +23,8 @@ constexpr std::array<char, 200> kPairs = [] {
     return pairs;
 }();
 
-/// 10^0 ... 10^22: all that a double holds exactly.
+/// The powers 10^0 ... 10^22.
+/// Law: all that a double holds exactly.
 constexpr std::array<double, 23> kPowers = [] {
     std::array<double, 23> powers{};
     double power = 1;
@@ -33,7 +35,7 @@ constexpr std::array<double, 23> kPowers = [] {
     return powers;
 }();
 
-/// `left` with leading zeros to that many digits, without zeros at the end; it is not 0.
+/// Writes `left` with leading zeros to that many digits, without zeros at the end; it is not 0.
 char* write_decimals(char* at, uint64_t left, int digits) {
     char* end = at + digits;
     char* to = end;
@@ -46,12 +48,13 @@ char* write_decimals(char* at, uint64_t left, int digits) {
     return end;
 }
 
-/// As to_chars() writes `value`, > 0, with that many significant digits; null where that takes more
-/// than one multiplication (tiny and huge numbers) or the last digit hangs on how this is rounded.
+/// Writes `value`, > 0, with that many significant digits like to_chars(); null where that takes
+/// more than one multiplication (tiny and huge numbers) or where the last digit depends on the
+/// rounding here.
 char* write_short(char* at, double value, int digits) {
     if (!(value >= 1e-4 && value < 1e15) || digits < 1 || digits > 15)
         return nullptr;
-    int exponent = 0;  // of the first digit
+    int exponent = 0;  // exponent of the first digit
     if (value >= 1) {
         while (value >= kPowers[static_cast<size_t>(exponent) + 1])
             ++exponent;
@@ -79,7 +82,9 @@ char* write_short(char* at, double value, int digits) {
     return write_decimals(at, left, decimals);
 }
 
-constexpr size_t kMostCharacters = 40;  // of a number
+/// The most characters of a number.
+/// Law: to_chars() writes at most a sign, 17 digits, a point and an exponent of five characters.
+constexpr size_t kMostCharacters = 40;
 
 char* write_number(char* at, double value, int digits) {
     if (!std::isfinite(value))

@@ -6,7 +6,7 @@ namespace lodestone::povray {
 std::vector<OwnUse> own_uses(const Model& model, const choose::Cut& cut,
                              std::span<const choose::RayCut> rays, bool softened) {
     std::vector<OwnUse> out;
-    std::vector<uint8_t> there(cut.nodes.size(), 0);  // for all classes together
+    std::vector<uint8_t> there(cut.nodes.size(), 0);  // classes of each node together
     for (const choose::RayCut& of : rays) {
         for (const choose::RayChoice& own : of.own) {
             if (there.at(own.node) != 0 || (of.rays == kShadowRays && own.soft && !softened))

@@ -42,7 +42,7 @@ std::string render_settings(const View& view, const Shading& shading, Antialiasi
         }
     }
     out += transparent ? "\nOutput_Alpha=On\n" : "\nOutput_Alpha=Off\n";
-    // Else what is gathered depends on which thread comes first.
+    // Gathered light would otherwise depend on which thread comes first.
     if (shading.bounces > 0)
         out += "High_Reproducibility=On\n";
     if (has_depth_blur(view.camera))

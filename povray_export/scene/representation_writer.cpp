@@ -7,10 +7,12 @@
 namespace lodestone::povray {
 namespace {
 
-// Raised whenever the text for the same input changes: files are found again by their name alone.
+// The version of the text: raised whenever the text for the same input changes, for files are found
+// again by their name alone.
+// Law: part of every file's hash.
 constexpr uint32_t kWriterVersion = 3;
 
-/// One solid; nothing for one without size.
+/// The text of one solid; nothing for one without size.
 std::string solid_text(const Model& model, const Representation& representation, const Solid& solid,
                        const RepresentationOptions& options, PictureWriter& pictures) {
     const Primitive& primitive = solid.primitive;

@@ -15,7 +15,7 @@ namespace lodestone::povray {
 struct RepresentationOptions {
     bool textures = true;  // false: the occurrence brings its texture
     bool uvs = true;       // texture coordinates, where a texture uses them
-    /// What a texel of a picture may cover at most: 2^texel metres, in the representation's own
+    /// The largest size of a texel of its pictures: 2^texel metres, in the representation's own
     /// frame.
     std::optional<int> texel = {};
 };

@@ -40,7 +40,7 @@ std::string head_text(const SceneHead& head, const Shading& shading, const Writt
         append_vector(out, sky.ambient, 6);
         out += "}\n";
     }
-    // What surfaces gather of an environment is what its lights leave over; its picture stands
+    // Surfaces gather of an environment the light that its lights leave over; its picture stands
     // before that, for all other rays.
     const bool pictured = !sky.pigment.empty();
     const glm::dvec3 background = pictured && !indirect ? glm::dvec3(0.0) : sky.ambient;

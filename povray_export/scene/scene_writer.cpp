@@ -29,7 +29,7 @@
 namespace lodestone::povray {
 namespace {
 
-/// Below an Environment group, or a stand-in for a group that holds Environment.
+/// Whether a node is below an Environment group, or a stand-in for a group that holds Environment.
 bool environment(const Model& model, const choose::Cut& cut,
                  const std::vector<uint8_t>& holds_environment, uint32_t node) {
     if (holds_environment[cut.nodes[node].object] != 0)
@@ -41,7 +41,9 @@ bool environment(const Model& model, const choose::Cut& cut,
     return false;
 }
 
-constexpr size_t kTypicalObject = 192;  // characters
+/// The characters of a typical object, for reserving memory.
+/// Taste: a larger value reserves more than is used.
+constexpr size_t kTypicalObject = 192;
 
 struct OccurrenceUse {
     uint32_t node;
@@ -49,13 +51,13 @@ struct OccurrenceUse {
     size_t position;  // in cut.chosen
     size_t file;      // index of the include file
     Affine world;
-    RayMask hidden;                       // ray classes that do not see it
-    RayMask in_place = 0;                 // of what the camera sees, for these classes only
-    std::optional<glm::dvec3> dull = {};  // in this color alone
+    RayMask hidden;        // ray classes that do not see it
+    RayMask in_place = 0;  // Not 0: in place of what the camera sees, for these classes only
+    std::optional<glm::dvec3> dull = {};  // shown in this color alone
 };
 
-/// What glows and is hidden from gathering rays, as lights shine in its place: its color without
-/// its glow. Nothing for all else.
+/// The color without its glow of a representation that glows and is hidden from gathering rays, as
+/// lights shine in its place. Nothing for all others.
 std::optional<glm::dvec3> without_glow(const Model& model, const Representation& representation,
                                        RayMask hidden) {
     if ((hidden & kRadiosityRays) == 0)
@@ -149,7 +151,7 @@ private:
                  "': ", error.message());
     }
 
-    /// What classes of rays meet, where there is light at all.
+    /// The representations that classes of rays meet, where there is light at all.
     std::span<const choose::RayCut> rays() const {
         return lit() ? options_.rays : std::span<const choose::RayCut>{};
     }
@@ -161,7 +163,8 @@ private:
             add_use({own.node, own.lod, 0, 0, own.world, own.hidden, own.in_place}, own.textures);
     }
 
-    /// Hides from classes what they meet something else in place of, which must be there.
+    /// Hides representations from classes that meet something else in their place, which must be
+    /// there.
     void hide_replaced() {
         std::vector<RayMask> replaced(cut_.nodes.size(), 0);
         for (const OccurrenceUse& use : uses_) {
@@ -175,18 +178,18 @@ private:
         }
     }
 
-    /// The path of its placements. The root has none and is called as its object is.
+    /// The path of a node's placements. The root has none and is called like its object.
     std::string called(uint32_t node) const {
         const std::string path = choose::path_of(model_, cut_, node);
         return path.empty() ? model_.objects.at(cut_.nodes[node].object).name : path;
     }
 
-    /// Of a representation of its node, in its file.
+    /// Adds a use of a representation of its node, in its file.
     void add_use(OccurrenceUse use, bool textures) {
         const choose::CutNode& node = cut_.nodes[use.node];
         const Representation& representation =
             model_.objects.at(node.object).representations.at(use.lod);
-        if (!make_invertible(use.world)) {  // of a line or a point nothing is seen anyway
+        if (!make_invertible(use.world)) {  // nothing is seen of a line or a point anyway
             if (!use.world.finite())
                 problems_.push_back({called(use.node), Severity::Warning, "bad_transform",
                                      "is not drawn: its transform is not a number"});
@@ -217,7 +220,7 @@ private:
                 continue;
             add_use({index, node.lod, position, 0, cut_.world(node), node.hidden},
                     !options_.false_color);
-            // Else gathering rays would look through a lamp, at what it lights behind itself.
+            // Gathering rays would otherwise look through a lamp, at what it lights behind itself.
             const std::optional<glm::dvec3> dull =
                 shading_.bounces > 0 ? without_glow(model_, representation, node.hidden)
                                      : std::nullopt;
@@ -230,7 +233,7 @@ private:
         includes_.name();
     }
 
-    /// What a texel may cover of one occurrence, in metres of its own frame.
+    /// The size that a texel may cover of one occurrence, in metres of its own frame.
     double texel_of(const choose::CutNode& node, const Representation& representation,
                     const Affine& world) const {
         const Bound bound = transformed(representation.summary.bound, world);
@@ -239,7 +242,7 @@ private:
         return shading_.texture_error * choose::pixel_size(view_, z) / enlarged;
     }
 
-    /// Once for what several occurrences show.
+    /// Names each problem once for all occurrences that show the same.
     void name_problems() {
         std::vector<uint8_t> named(includes_.size(), 0);
         for (const OccurrenceUse& use : uses_) {
@@ -264,9 +267,11 @@ private:
     bool lit() const { return lit(options_); }
     const World& view_world() const { return model_.world; }
 
-    /// Where depths are blurred each of 37 samples of a pixel or more casts its rays to every lamp,
-    /// so that half of them along an edge are as good.
+    /// The rays of a light's size. Where depths are blurred each of 37 samples of a pixel or more
+    /// casts its rays to every lamp, so that half of them along an edge are as good.
     LightSampling light_sampling() const {
+        // The fewest rays along an edge.
+        // Taste: a larger value takes longer where depths are blurred.
         constexpr int kFewest = 5;
         const bool thorough = options_.antialiasing == Antialiasing::Reference;
         int rays = shading_.area_samples;
@@ -278,16 +283,17 @@ private:
         return {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1};
     }
 
-    /// Lights are chosen by what the camera sees, as if all rays met that.
+    /// The classes that an object is hidden from in the plan. Lights are chosen by what the camera
+    /// sees, as if all rays met that.
     RayMask hidden_in_plan(const OccurrenceUse& use) const {
         const RayMask own = cut_.nodes[use.node].hidden;
         if (use.in_place != 0)
             return kAllRays;
-        // What has flags is not parted; this one says nothing to lights
+        // An object with flags is not parted; this flag says nothing to lights.
         return use.hidden == own ? own : static_cast<RayMask>(own | kRadiosityRays);
     }
 
-    /// By which lights what is drawn; its numbers are those of the uses that are drawn.
+    /// The lights of everything that is drawn; its numbers are those of the uses that are drawn.
     light::LightPlan light_plan(const std::vector<Bound>& occluders) {
         const double error = options_.light_error.value_or(view_.pixel_error);
         report_.lamps = static_cast<uint64_t>(
@@ -309,7 +315,7 @@ private:
         return plan;
     }
 
-    /// Everything that is drawn, with the lights of its group around it.
+    /// The text of everything that is drawn, with the lights of its group around it.
     std::string grouped_objects(const light::LightPlan& plan,
                                 const std::vector<std::string>& lights, double times) {
         std::string out;
@@ -332,7 +338,7 @@ private:
         return plan.empty() ? out : grouped_text(plan, lights, groups);
     }
 
-    /// What of it is `within` a box (world frame).
+    /// Appends an object, or its part `within` a box (world frame).
     void append_object(std::string& out, const OccurrenceUse& use, double times,
                        const std::optional<Box3>& within = {}) const {
         out += "object{";

@@ -22,8 +22,9 @@ struct ExportOptions {
     /// The linear color of each chosen occurrence instead, in the order of cut.chosen; empty:
     /// color_of().
     std::vector<glm::dvec3> colors{};
-    // Without Environment objects (and all below them, and stand-ins for groups that hold them),
-    // lights and world, on a transparent film: the picture's alpha says which pixels are covered.
+    // The scene has no Environment objects (nor all below them, nor stand-ins for groups that hold
+    // them), lights and world, and a transparent film: the picture's alpha says which pixels are
+    // covered.
     bool covered_only = false;
     /// The error up to which lights are approximated, in pixels, in place of the view's Pixel
     /// Error; 0: all lights as they are.

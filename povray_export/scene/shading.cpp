@@ -7,12 +7,25 @@
 namespace lodestone::povray {
 namespace {
 
-// More are beyond what POV-Ray takes, or what anybody waits for.
+// The next six are limits of the controls.
+//
+// Samples of a pixel, as the square root of their number.
+// Law: POV-Ray's Antialias_Depth ends there.
 constexpr int kMostDepth = 9;
+/// Mirrors or glass one behind the other.
+/// Taste: more is beyond what anybody waits for.
 constexpr int kMostTraceDepth = 100;
+/// Rays along the edge of a lamp.
+/// Taste: more is beyond what anybody waits for; the number is 2^7 + 1.
 constexpr int kMostAreaSamples = 129;
+/// Lights of an environment image.
+/// Taste: more is beyond what anybody waits for.
 constexpr int kMostSkyLights = 1024;
+/// Bounces of light.
+/// Taste: more adds light that nobody sees.
 constexpr int kMostHandings = 8;
+/// Rays that gather light.
+/// Law: POV-Ray's radiosity takes no more.
 constexpr int kMostBounceRays = 1600;
 
 int sky_lights_of(Antialiasing antialiasing) {
@@ -43,7 +56,7 @@ GatheringQuality gathering_of(Antialiasing antialiasing) {
     return {800, 0.4};
 }
 
-/// POV-Ray refines by halving.
+/// The number of samples, made 2^n + 1, for POV-Ray refines by halving.
 int halving(int samples) {
     if (samples <= 1)
         return 1;

@@ -14,12 +14,16 @@
 namespace lodestone::povray {
 namespace {
 
+/// The texels along a side.
+/// Taste: a larger value shows finer bumps, for memory and time that grow with its square.
 constexpr int kMostSide = 1024;
-constexpr double kSteepest = 4;  // slopes beyond are cut: such normals are mistakes of compression
+/// Steeper slopes are cut.
+/// Taste: such normals are mistakes of compression; a larger value lets them make spikes.
+constexpr double kSteepest = 4;
 
 using Complex = std::complex<double>;
 
-/// Discrete Fourier transform in place; the size is a power of two, `sign` -1 or +1.
+/// The discrete Fourier transform in place; the size is a power of two, `sign` -1 or +1.
 void transform(Complex* values, size_t count, size_t stride, double sign) {
     const auto at = [=](size_t i) -> Complex& { return values[i * stride]; };
     for (size_t i = 1, j = 0; i < count; ++i) {
@@ -91,7 +95,7 @@ HeightMap integrated(const Texture& normals) {
     for (size_t i = 0; i < slopes.size(); ++i)
         slopes[i] /= std::max(counts[i], 1);
     transform(slopes, width, height, -1);
-    // Both slopes are real: their spectra are the even and odd parts of the sum's.
+    // Both slopes are real: their spectra are the even and odd parts of the sum's spectrum.
     std::vector<Complex> heights(slopes.size());
     for (size_t y = 0; y < height; ++y) {
         for (size_t x = 0; x < width; ++x) {
@@ -135,7 +139,9 @@ HeightMap integrated(const Texture& normals) {
 std::shared_ptr<const HeightMap> height_map(const Texture& normals) {
     static std::mutex mutex;
     static std::map<Hash, std::shared_ptr<const HeightMap>> known;
-    constexpr size_t kKept = 32;  // of up to 4 MB
+    // Height maps that are kept, of up to 4 MB each.
+    // Taste: a larger value fits fewer maps again, for memory.
+    constexpr size_t kKept = 32;
     Hasher hasher;
     hasher.value(normals.picture->hash).value(normals.channel);
     for (int i = 0; i < 3; ++i)
@@ -155,7 +161,8 @@ std::shared_ptr<const HeightMap> height_map(const Texture& normals) {
 }
 
 std::string png_of(const HeightMap& map) {
-    // Gray levels between k and k + 1: which of red, green and blue are k + 1.
+    // The gray levels between k and k + 1, and which of red, green and blue are k + 1.
+    // Law: POV-Ray's gray is 0.297 R + 0.589 G + 0.114 B.
     static constexpr struct {
         double gray;
         int red, green, blue;

@@ -17,7 +17,9 @@
 namespace lodestone::povray {
 namespace {
 
-// Raised whenever what is baked changes: files are found again by their name alone.
+// The version of baked pictures: raised whenever what is baked changes, for files are found again
+// by their name alone.
+// Law: part of every file's hash.
 constexpr uint32_t kBakeVersion = 1;
 
 constexpr std::string_view kNameComment = "// i/";
@@ -26,10 +28,11 @@ bool plain(const Texture& texture) {
     return texture.scale == glm::dvec3(1.0) && texture.offset == glm::dvec3(0.0);
 }
 
-/// Color type of a PNG's header; -1 for one that POV-Ray is not trusted with (interlaced), or that
-/// has a transparent color.
+/// The color type in a PNG's header; -1 for a PNG that POV-Ray is not trusted with (interlaced), or
+/// that has a transparent color.
 int png_color_type(const std::string& bytes) {
-    constexpr size_t kHeader = 33;  // signature and IHDR
+    // Law: the bytes of a PNG's signature (8) and its IHDR chunk (25).
+    constexpr size_t kHeader = 33;
     if (bytes.size() < kHeader || bytes[28] != 0)
         return -1;
     for (size_t at = 8; at + 12 <= bytes.size();) {
@@ -45,7 +48,7 @@ int png_color_type(const std::string& bytes) {
     return static_cast<unsigned char>(bytes[25]);
 }
 
-/// POV-Ray may read the picture's own file: it shows the texture's very values.
+/// Whether POV-Ray may read the picture's own file: it shows the texture's very values.
 bool usable_as_is(const Texture& texture, PigmentContent content) {
     const Picture& picture = *texture.picture;
     if (content == PigmentContent::Height || !plain(texture) ||
@@ -65,7 +68,7 @@ int halved(int side, int halvings) {
     return std::max(1, side >> halvings);
 }
 
-/// The mean of what each new texel covers.
+/// The means of the texels that each new texel covers.
 image::Image halved(const image::Image& from, int halvings) {
     image::Image to;
     to.width = halved(from.width, halvings);
@@ -132,8 +135,10 @@ std::string baked(const Texture& texture, PigmentContent content, int halvings) 
     return image::png_bytes(to);
 }
 
-/// Whether anything outside of the picture is looked at.
+/// Whether anything outside the picture is looked at.
 bool leaves(const Texture& texture, const UvRange& range) {
+    // Coordinates may lie outside by this share of the picture.
+    // Taste: rounding of texture coordinates is below; a larger value shows the wrong border.
     constexpr double kEdge = 1e-4;
     for (int corner = 0; corner < 4; ++corner) {
         const glm::dvec2 at = to_picture(texture, {(corner & 1) != 0 ? range.high.x : range.low.x,
@@ -146,8 +151,8 @@ bool leaves(const Texture& texture, const UvRange& range) {
     return false;
 }
 
-/// Below 0 and above 1 of an axis the border's texels: strips so wide that the center of one texel
-/// covers them.
+/// Extends a picture below 0 and above 1 of an axis by the border's texels: strips so wide that the
+/// center of one texel covers them.
 std::string extended(const std::string& inside, char axis, int texels) {
     const bool x = axis == 'x';
     const auto strip = [&](double center) {
@@ -162,7 +167,7 @@ std::string extended(const std::string& inside, char axis, int texels) {
            strip(1 - 0.5 / texels) + "]}";
 }
 
-/// Black outside 0...1 of both axes.
+/// Makes a picture black outside 0...1 of both axes.
 std::string clipped(const std::string& inside) {
     return "function{select(x,0,1)*select(1-x,0,1)*select(y,0,1)*select(1-y,0,1)} "
            "pigment_map{[.5 rgb 0][.5 " +
@@ -177,7 +182,9 @@ std::string mapping(const Texture& texture) {
     for (double& value : m)  // beyond, nothing can be told apart; POV-Ray corrects columns < 1e-10
         value = std::isfinite(value) ? std::clamp(value, -1e6, 1e6) : 0;
     const auto determinant = [&m] { return m[0] * m[4] - m[1] * m[3]; };
-    constexpr double kThin = 1e-6;  // a line or a point of the picture is a very thin part of it
+    // The part of the picture that a line or a point of it becomes.
+    // Taste: POV-Ray must invert it; a larger value shows neighboring texels.
+    constexpr double kThin = 1e-6;
     if (std::abs(determinant()) < kThin * kThin) {
         m[0] += kThin;
         m[4] += kThin;

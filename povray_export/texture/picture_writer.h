@@ -27,7 +27,7 @@ enum class PigmentContent : uint8_t {
 struct UvRange {
     glm::dvec2 low{0.0};
     glm::dvec2 high{1.0};
-    /// What one texel may cover, in texture coordinates: larger pictures are made smaller.
+    /// The size that one texel may cover, in texture coordinates: larger pictures are made smaller.
     double texel = 0;
 };
 

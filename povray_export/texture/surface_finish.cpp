@@ -11,6 +11,8 @@
 namespace lodestone::povray {
 namespace {
 
+/// The digits of a number in a finish.
+/// Taste: a larger value writes longer files for nothing that shows.
 constexpr int kDigits = 6;
 
 double clamped(double value, double low, double high, double otherwise) {
@@ -22,12 +24,12 @@ void append_named(std::string& out, const char* name, double value) {
     append_number(out, value, kDigits);
 }
 
-/// What tests/bench/fit_finish.py found for one roughness, against Cycles of Blender 3.4: specular
-/// .5 and clear coat 1, times what they are. Exponents are of Blinn's half vector (`specular`), the
-/// coat's of Phong's mirror direction. A metal is a highlight and a diffuse term, both tinted:
-/// without the latter rough ones are 20/255 off, with it 8/255. `sky` and `metal_sky` are what
-/// comes back from a uniform sky of 1, between the mean of a sphere and what faces the eye. Entries
-/// below .05 repeat it: there Cycles without indirect light shows no sun.
+/// A row that tests/bench/fit_finish.py found for one roughness, against Cycles of Blender 3.4:
+/// specular 0.5 and clear coat 1, times what they are. Exponents are of Blinn's half vector
+/// (`specular`), the coat's of Phong's mirror direction. A metal is a highlight and a diffuse term,
+/// both tinted: without the latter rough ones are 20/255 off, with it 8/255. `sky` and `metal_sky`
+/// are the light that comes back from a uniform sky of 1, between the mean of a sphere and what
+/// faces the eye. Entries below 0.05 repeat it: there Cycles without indirect light shows no sun.
 struct FinishRow {
     double roughness;
     double log_exponent;
@@ -40,6 +42,8 @@ struct FinishRow {
     double metal_sky;
 };
 
+/// The finishes by roughness, rising.
+/// Fitted: by tests/bench/fit_finish.py, on balls rendered by Cycles of Blender 3.4.
 const FinishRow kRows[] = {
     {0.00, std::log(16440), 0.0350, 0.0488, 3.0, 0.0004, std::log(16440), 0.150, 1.000},
     {0.05, std::log(8000), 0.0300, 0.0465, 3.0, 0.0008, std::log(7483), 0.176, 1.000},
@@ -64,6 +68,8 @@ struct CoatRow {
     double sky;
 };
 
+/// The clear coats by roughness, rising.
+/// Fitted: by tests/bench/fit_finish.py, on balls rendered by Cycles of Blender 3.4.
 const CoatRow kCoatRows[] = {
     {0.00, std::log(2620), 0.0079, 0.0117}, {0.03, std::log(917), 0.0079, 0.0113},
     {0.10, std::log(51.2), 0.0072, 0.0113}, {0.20, std::log(13.8), 0.0075, 0.0112},
@@ -107,10 +113,10 @@ CoatRow coat_of(double roughness) {
             mixed(&CoatRow::sky)};
 }
 
-/// Share of a mirrored image that is traced: POV-Ray's is sharp, so it fades out where the true one
-/// would be a blur. Metals show nothing else. Of the rest it is 4% of the light when facing, and
-/// costs the same: where all surfaces trace it a picture takes 3.4 times as long (measured), so
-/// theirs ends earlier.
+/// The share of a mirrored image that is traced: POV-Ray's is sharp, so it fades out where the true
+/// one would be a blur. Metals show nothing else. The image of other surfaces is 4 % of the light
+/// when facing, and costs the same: where all surfaces trace it a picture takes 3.4 times as long
+/// (measured), so theirs ends earlier.
 double sharpness(double roughness, double sharp, double blurred) {
     return std::clamp((blurred - roughness) / (blurred - sharp), 0.0, 1.0);
 }
@@ -144,7 +150,7 @@ SurfaceLook look_of(const Material& material) {
 Finish finish_of(const SurfaceLook& look) {
     const double m = look.metallic;
     const FinishRow row = row_of(look.roughness);
-    const double dielectric = (1 - m) * look.specular / 0.5;  // of the table's
+    const double dielectric = (1 - m) * look.specular / 0.5;  // over the table's
     const double sharp = coat_sharpness(look.roughness);
     const double metal_sharp = metal_sharpness(look.roughness);
     const CoatRow coat = coat_of(look.clearcoat_roughness);
@@ -161,7 +167,7 @@ Finish finish_of(const SurfaceLook& look) {
     }
     finish.coat = look.clearcoat * coat.highlight;
     finish.coat_exponent = std::exp(coat.log_exponent);
-    // What is mirrored: Schlick's curve, tinted as far as it is metal's.
+    // The mirrored part is Schlick's curve, tinted as far as it is metal's.
     const double metal_mirror = m * metal_sharp * row.metal_sky;
     finish.mirror = metal_mirror + dielectric * sharp * 0.04 + look.clearcoat * coat_sharp * 0.01;
     finish.mirror_grazing = m * metal_sharp + (1 - m) * sharp * std::min(1.0, 2 * look.specular) +
@@ -230,6 +236,8 @@ void append_flat_texture(std::string& out, const glm::dvec3& color) {
 }
 
 glm::dvec3 color_of(Kind kind, uint32_t lod) {
+    // The colors of meshes by LOD number.
+    // Taste: a scale that grows brighter from blue to yellow, as levels grow coarser.
     static constexpr glm::dvec3 kMesh[] = {{.84, .84, .84}, {.27, .33, .66}, {.16, .50, .73},
                                            {.13, .64, .65}, {.27, .75, .44}, {.62, .82, .23},
                                            {.95, .88, .15}};

@@ -15,12 +15,14 @@
 namespace lodestone::povray {
 namespace {
 
-// A finish cannot follow a picture: textures at this many steps of roughness are blended instead.
-// Highlights change fastest where the surface is smooth.
+// The steps of roughness whose textures are blended, for a finish cannot follow a picture.
+// Taste: highlights change fastest where the surface is smooth; more steps write longer textures,
+// which take longer to shade.
 constexpr double kRoughnessSteps[] = {0, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
 
-// POV-Ray multiplies what surfaces emit and answer to the sky by the pigment, so a black one needs
-// a trace of color: lit, that is never seen.
+// The darkest pigment. POV-Ray multiplies emission and the answer to the sky by the pigment, so a
+// black one needs a trace of color.
+// Taste: lit, it is never seen; a larger value makes black surfaces gray.
 constexpr double kLeastPigment = 1e-4;
 
 constexpr const char* kClear =
@@ -30,9 +32,11 @@ double share(double value, double otherwise) {
     return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
 }
 
-/// What all channels are multiplied by, where that is all that is done to them and about 1 (a
-/// picture cannot hold more than 1); else 1.
+/// The factor of all channels, where that is all that is done to them and about 1 (a picture cannot
+/// hold more than 1); else 1.
 double even_scale(const Texture& texture) {
+    // The largest factor.
+    // Taste: a larger value leaves more of the brightness to the finish.
     constexpr double kMost = 2;
     const glm::dvec3& scale = texture.scale;
     const bool even = std::abs(scale.x - scale.y) <= 1e-9 * std::abs(scale.x) &&
@@ -42,7 +46,7 @@ double even_scale(const Texture& texture) {
                : 1;
 }
 
-/// Inside of texture{...} or of an entry of a texture_map.
+/// The inside of texture{...} or of an entry of a texture_map.
 using Body = std::string;
 
 class TextureText {
@@ -69,8 +73,9 @@ private:
         return "uv_mapping " + pictures_.pigment(texture, content, surface_.range);
     }
 
-    /// POV-Ray's bump_map knows no direction of u, so the height is a pattern in space, laid on the
-    /// plane of the surface: a slope of 1 needs an amount of 7.5 (measured).
+    /// The text of the bumps. POV-Ray's bump_map knows no direction of u, so the height is a
+    /// pattern in space, laid on the plane of the surface: a slope of 1 needs an amount of 7.5
+    /// (measured).
     std::string normal(const Material& material) {
         if (!surface_.flat)
             return "";
@@ -85,7 +90,7 @@ private:
             const Texture& texture = material.normal_texture;
             const std::shared_ptr<const HeightMap> heights = height_map(texture);
             const glm::dvec2 size = picture_size(texture);
-            // Of a texel; where it is no square its slopes are true on average.
+            // The width of a texel; where it is no square its slopes are true on average.
             const double wide = std::sqrt(size.x / heights->width * size.y / heights->height);
             map = relief(texture, PigmentContent::Height,
                          std::clamp(material.normal_strength, 0.0, 10.0) * heights->range * wide *
@@ -99,7 +104,7 @@ private:
         return "normal{average normal_map{[1 " + bump + "][1 " + map + "]}} ";
     }
 
-    /// Metres of the whole picture across and along, on this plane.
+    /// The metres of the whole picture across and along, on this plane.
     glm::dvec2 picture_size(const Texture& texture) const {
         const std::array<double, 6>& m = texture.to_picture;
         const glm::dmat3 rows = glm::transpose(surface_.to_uv.linear);
@@ -107,7 +112,8 @@ private:
                 1 / std::max(glm::length(m[3] * rows[0] + m[4] * rows[1]), 1e-9)};
     }
 
-    /// `height`: metres of white; `texels`: of the picture, that one of the pattern covers.
+    /// The text of a relief. `height` is in metres for white; `texels` of the picture are covered
+    /// by one of the pattern.
     std::string relief(const Texture& texture, PigmentContent content, double height, int texels) {
         const glm::dvec2 size = picture_size(texture);
         const double texel =
@@ -133,12 +139,12 @@ private:
         return out + '}';
     }
 
-    /// By the number of a texture.
+    /// Blends entries by the number of a texture.
     Body blended(const Texture& texture, const Entries& entries) {
         return "pigment_pattern{" + pigment(texture, PigmentContent::Number) + '}' + map(entries);
     }
 
-    /// (1 - second) of a and second of b.
+    /// The average: (1 - second) of a and second of b.
     static Body average(Body a, Body b, double second) {
         if (second <= 0 || a == b)
             return a;
@@ -147,7 +153,7 @@ private:
         return "average" + map({{1 - second, std::move(a)}, {second, std::move(b)}});
     }
 
-    /// A share of alpha of the surface, the rest is not there.
+    /// Covers a share of alpha of the surface; the other part is not there.
     Body covered(const Material& material) {
         Body body = rough(material);
         if (material.alpha_mode == AlphaMode::Opaque)
@@ -200,8 +206,9 @@ private:
         return average(solid(material, look), glass(material, look), through);
     }
 
-    /// Filters by the base color where light enters and where it leaves; the index of refraction is
-    /// the object's. Other than in a path tracer without caustics its shadow is bright.
+    /// The text of glass. It filters by the base color where light enters and where it leaves; the
+    /// index of refraction is the object's. Other than in a path tracer without caustics its shadow
+    /// is bright.
     Body glass(const Material& material, const SurfaceLook& look) {
         Body out = "pigment{";
         if (shown(material.base_color_texture)) {
@@ -234,8 +241,8 @@ private:
         }
         const bool image = shown(material.base_color_texture);
         const bool lamp = shown(material.emission_texture);
-        // What the paint leaves of a picture's brightness, and what its own scale does, is left to
-        // the finish: a picture is baked for every distinct hue only.
+        // The brightness that the paint leaves of a picture, and the picture's own scale, are left
+        // to the finish: a picture is baked for every distinct hue only.
         const double scale = image ? even_scale(material.base_color_texture) : 1;
         const double painted = image ? std::max({paint.x, paint.y, paint.z}) : 1;
         const double brightness = scale * painted;
@@ -243,7 +250,7 @@ private:
         finish.ambient *= brightness;
         finish.diffuse *= brightness;
         finish.specular *= std::lerp(1.0, brightness, finish.metallic);
-        // What has not the color of the pigment, and is the same all over.
+        // The part that has not the color of the pigment, and is the same all over.
         const glm::dvec3 white(white_sky(look));
         glm::dvec3 even = lamp ? glm::dvec3(0.0) : emission;
         const bool plain = image && (white != glm::dvec3(0.0) || even != glm::dvec3(0.0));
@@ -283,7 +290,8 @@ private:
         return "average" + map(entries);
     }
 
-    /// Brighter than 1 is not for a picture: its brightness is left to the finish.
+    /// The text of a glow. A picture holds nothing brighter than 1: such brightness is left to the
+    /// finish.
     Body glow(Texture texture, double light) {
         const glm::dvec3 most = glm::abs(texture.scale) + glm::abs(texture.offset);
         const double brightest =
