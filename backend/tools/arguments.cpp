@@ -8,7 +8,7 @@
 namespace lodestone::tools {
 namespace {
 
-/// 8, .5 as 0.5, 1e+09: as few digits as tell the number.
+/// The number in as few digits as tell it: 8, 0.5, 1e+09.
 std::string written(double value) {
     char digits[32];
     const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
@@ -21,7 +21,7 @@ CommandArguments::CommandArguments(const std::vector<std::string>& words,
                                    const std::vector<OptionHelp>& options) {
     for (size_t i = 0; i < words.size(); ++i) {
         const std::string& word = words[i];
-        if (word == "--") {  // what follows are names, however they begin
+        if (word == "--") {  // the words that follow are names, however they begin
             positional_.insert(positional_.end(),
                                words.begin() + static_cast<std::ptrdiff_t>(i) + 1, words.end());
             break;

@@ -15,7 +15,11 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
+/// The width in pixels of a picture without --size.
+/// Taste: a larger value makes every trial picture slower.
 constexpr int kWidth = 640;
+/// The shape of the picture of a camera that the command makes.
+/// Taste: most displays have it.
 constexpr double kAspect = 16.0 / 9;
 
 Vector vector_of(const std::string& option, const std::string& text) {
@@ -82,7 +86,7 @@ std::optional<lds_camera> camera_named(const lds_model* model, const std::string
     return std::nullopt;
 }
 
-/// The ball around a leaf, in the world; enlarged as much as along the most enlarged axis.
+/// The ball around a leaf, in the world; it grows as much as along the most enlarged axis.
 struct LeafBall {
     Vector center{};
     double radius = 0;
@@ -110,7 +114,7 @@ std::vector<LeafBall> balls_of(lds_model* model) {
     return balls;
 }
 
-/// Sees everything from the front right above.
+/// A camera that sees everything from the front right above.
 lds_camera camera_around(lds_model* model, double angle_deg, double aspect) {
     const std::vector<LeafBall> balls = balls_of(model);
     Vector middle{};

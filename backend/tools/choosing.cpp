@@ -48,7 +48,7 @@ uint32_t classes_of(const std::optional<std::string>& list) {
     return mask;
 }
 
-/// The place of what an option says among its words, the first by default. Throws UsageError.
+/// The place of an option's value among its words, the first by default. Throws UsageError.
 template <size_t Count>
 int32_t word_of(const CommandArguments& arguments, const char* option,
                 const std::array<const char*, Count>& words) {
@@ -82,7 +82,7 @@ CutOptions::CutOptions(const CommandArguments& arguments, lds_view& view)
         throw UsageError("--max-triangles is 0; 1 or more expected");
     if (budget_.bytes == 0 && arguments.has("max-memory"))
         throw UsageError("--max-memory is 0; more expected");
-    // A budget alone asks for the finest that fits.
+    // A budget alone asks for the finest cut that fits.
     if ((budget_.triangles != 0 || budget_.bytes != 0) && !arguments.has("pixel-error"))
         view_.pixel_error = 0;
 }

@@ -79,7 +79,8 @@ int run(const std::vector<std::string>& words) {
     throw UsageError("'" + words[0] + "' is no verb of lodestone; see lodestone --help");
 }
 
-/// What was printed may lie in a buffer until now, and the disk be full.
+/// The exit code after all is told: printed text may lie in a buffer until now, and the disk be
+/// full.
 int told(int code) {
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return code;

@@ -22,7 +22,7 @@ class ReportValue {
 public:
     using Held = std::variant<std::nullptr_t, bool, uint64_t, double, std::string, List, Fields>;
 
-    // Not explicit: a report reads as a table of names and plain values.
+    // These are not explicit: a report reads as a table of names and plain values.
     ReportValue() : held_(nullptr) {}
     ReportValue(bool value) : held_(value) {}
     ReportValue(std::unsigned_integral auto value) : held_(uint64_t{value}) {}

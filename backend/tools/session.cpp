@@ -40,6 +40,8 @@ ProgressBar::ProgressBar(const char* what) {
             if (interrupted != 0)
                 cancel = 1;
             if (terminal && tick % 4 == 0) {
+                // The characters of the bar.
+                // Taste: it fits beside the stage on a terminal of 80 columns.
                 constexpr int kBar = 40;
                 const int full = static_cast<int>(fraction * kBar);
                 std::fprintf(stderr, "\r%s [%.*s%*s] %3.0f %%", what, full,

@@ -7,14 +7,14 @@
 namespace lodestone::tools {
 namespace {
 
-/// Bytes of the character that begins here if it must not be shown, else 0.
+/// The bytes of the character that begins here if it must not be shown, else 0.
 size_t steering(std::string_view text) {
     const auto byte = [&](size_t i) {
         return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
     };
     if (byte(0) < 0x20 || byte(0) == 0x7f)
         return 1;
-    if (byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0)  // the other controls
+    if (byte(0) == 0xc2 && byte(1) >= 0x80 && byte(1) < 0xa0)  // the other control characters
         return 2;
     if (byte(0) != 0xe2)
         return 0;
@@ -55,7 +55,7 @@ std::string in_brackets(std::string_view text) {
 }
 
 std::string temporary_beside(const std::string& path) {
-    std::filesystem::path out(path);  // short whatever the path's own name is
+    std::filesystem::path out(path);  // the name is short whatever the path's own name is
     out.replace_filename(".lodestone-" + std::to_string(getpid()) + ".tmp");
     return out.string();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// measure, simplify, build, info.
+// Model verbs: measure, simplify, build, info.
 #include "report.h"
 #include "session.h"
 #include "terminal.h"
@@ -20,7 +20,8 @@ int32_t threads_of(const CommandArguments& arguments) {
     return static_cast<int32_t>(arguments.number("threads", 0, 0, 4096));
 }
 
-constexpr std::array<const char*, 3> kModes{"fast", "best", "cluster"};  // as lds_simplify_mode
+/// Numbered like lds_simplify_mode.
+constexpr std::array<const char*, 3> kModes{"fast", "best", "cluster"};
 
 int32_t mode_of(const CommandArguments& arguments) {
     const std::string name = arguments.text("mode").value_or(kModes[LDS_SIMPLIFY_FAST]);

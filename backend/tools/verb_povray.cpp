@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// povray: a picture of a store or model, without Blender.
+// POV-Ray verb: povray, a picture of a store or model, without Blender.
 #include "cameras.h"
 #include "choosing.h"
 #include "report.h"
@@ -62,7 +62,7 @@ int32_t antialias_of(const CommandArguments& arguments) {
     throw UsageError("--antialias is '" + wanted + "'; off, final or reference expected");
 }
 
-/// A sun over the right shoulder and a grey sky, so that a scanned statue can be seen.
+/// Adds a sun over the right shoulder and a grey sky, so that a scanned statue can be seen.
 void light_up(lds_model* model) {
     lds_light sun{};
     sun.struct_size = sizeof sun;
@@ -82,7 +82,7 @@ void light_up(lds_model* model) {
     check(lds_model_set_world(model, &sky));
 }
 
-/// What the picture says about itself, as pictures made in Blender do.
+/// Writes into the picture what pictures made in Blender say about themselves.
 void stamp(const std::string& picture, const lds_view& view) {
     char error[40];
     std::snprintf(error, sizeof error, "%g", view.pixel_error);
@@ -91,13 +91,13 @@ void stamp(const std::string& picture, const lds_view& view) {
     check(lds_image_add_text(picture.c_str(), keywords, texts, 2));
 }
 
-/// The finished picture under its name; the old one stays until then.
+/// Puts the finished picture under its name; the old one stays until then.
 void deliver(const fs::path& picture, const std::string& out) {
     std::error_code error;
     fs::rename(picture, out, error);
     if (!error)
         return;
-    const std::string beside = temporary_beside(out);  // on another disk
+    const std::string beside = temporary_beside(out);  // the folder is on another disk
     fs::copy_file(picture, beside, fs::copy_options::overwrite_existing, error);
     if (!error)
         fs::rename(beside, out, error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cut, compare, version.
+// View verbs: cut, compare, version.
 #include "cameras.h"
 #include "choosing.h"
 #include "report.h"

@@ -13,6 +13,8 @@ const OptionHelp kSeed{"seed", "N", "seed of random samples (default 1)"};
 }  // namespace
 
 const std::vector<CommandVerb>& verbs() {
+    // One row a verb, in the order a user meets them.
+    // Law: the counts and options are those that each verb's function takes.
     static const std::vector<CommandVerb> kAll{
         {"measure",
          "FILE",
