@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t kNowhere = ~uint32_t{0};
 // The error samples on the source's vertices.
 // Taste: more know the error better and take more time in every frame.
-constexpr uint32_t kSourceWitnesses = 2048;
+constexpr uint32_t kSourceSamples = 2048;
 // The error samples on the level's vertices.
 // Taste: more know the error better and take more time in every frame.
 constexpr uint32_t kLevelVertices = 1024;
@@ -169,7 +169,7 @@ void LevelBinder::add_source_samples(const BindingTrace& trace, BoundLevel& leve
     const PosedSurface& pose = surface_.pose();
     std::optional<ray::MeshScene> whole;  // the whole level, for parts that vanished
     for (const measure::WeightedVertex& from :
-         measure::weighted_vertices(mesh_of(pose), kSourceWitnesses, kSeed)) {
+         measure::weighted_vertices(mesh_of(pose), kSourceSamples, kSeed)) {
         const glm::dvec3 here(pose.points[from.vertex]);
         if (!finite(here))
             continue;

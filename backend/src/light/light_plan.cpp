@@ -21,7 +21,7 @@ constexpr double kShare = 0.05;
 constexpr double kRays = 2e7;
 // The fewest points that distinguish a hundred rooms.
 // Fitted: by tests/bench/bench_lights.py, a house of 100 rooms and 400 lamps.
-constexpr double kRooms = 12000;
+constexpr double kRoomPoints = 12000;
 // The fewest points with very many lamps.
 // Taste: fewer leave most things without a point.
 constexpr double kFewestPoints = 256;
@@ -109,7 +109,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
         return {};
     }
     const LitScene scene(model, renderer, drawn, job);
-    const double wanted = std::max(kShare * view.width * view.height, kRooms);
+    const double wanted = std::max(kShare * view.width * view.height, kRoomPoints);
     const double count = std::clamp(std::min(wanted, kRays / static_cast<double>(lamps)),
                                     kFewestPoints, kMostPoints);
     bounces = std::min(bounces, kMostHanded);
