@@ -46,8 +46,8 @@ struct alignas(64) TableChild {
     double finest_error = 0;
     ObjectIndex object = kNoObject;
     uint32_t row = 0;
-    uint32_t linear = kUnturned;  // in linears(); kUnturned: moved only
-    uint32_t overrides = 0;       // in overrides(); 0: none
+    uint32_t linear = kUnturned;  // in linears_; kUnturned: moved only
+    uint32_t overrides = 0;       // in overrides_; 0: none
     // The children of its object; these two are known in a whole table only.
     uint32_t first_child = 0;
     uint32_t child_count = 0;
