@@ -1,12 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/candidate.h"
 
+#include "base/error.h"
 #include "solids/solid_replacement.h"
 
 #include <algorithm>
 #include <limits>
 
 namespace lodestone::hierarchy {
+
+bool may_follow(CandidateState from, CandidateState to) {
+    switch (to) {
+        case CandidateState::Unproven:
+            return false;
+        case CandidateState::Measured:
+            return from == CandidateState::Unproven;
+        case CandidateState::Matched:
+        case CandidateState::Pictured:
+            return from == CandidateState::Measured;
+        case CandidateState::Sealed:
+            return from != CandidateState::Unproven && from != CandidateState::Sealed;
+    }
+    return false;
+}
+
+void come_to(StandInCandidate& candidate, CandidateState next) {
+    if (!may_follow(candidate.state, next))
+        fail(Status::Internal, "a candidate skips a state or goes back");
+    candidate.state = next;
+}
 
 uint64_t bytes_of(const StandInCandidate& candidate) {
     switch (candidate.kind) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Candidate: a stand-in on its way into the model, and which of several are worth keeping.
+// StandInCandidate: a stand-in on its way into the model, and which of several are worth keeping.
 #pragma once
 
 #include "model/model.h"
@@ -9,31 +9,47 @@
 
 namespace lodestone::hierarchy {
 
-/// Its materials are its own until it is added.
+/// How far the way of a candidate into the model has come, and so what its error is.
+enum class CandidateState : uint8_t {
+    Unproven,  // The error is a distance: nobody has looked whether as much is shown.
+    Measured,  // The error is a distance, or that of patches, if that is larger.
+    Matched,  // As Measured, made as bright as the finest, and no nearer than gaps in pictures say.
+    Pictured,  // The error is that of pictures, in which it was made as bright as the finest.
+    Sealed,    // The last step, from any state but the first: RepresentationSummary::sealed.
+};
+
+/// Whether a candidate in the state `from` may come to `to` next. Nothing goes back: what is made
+/// of a candidate is another one, and begins anew.
+bool may_follow(CandidateState from, CandidateState to);
+
+/// A stand-in whose materials are its own until it is added.
 struct StandInCandidate {
     Kind kind = Kind::Mesh;
     double error = 0;
     double max_error = 0;
-    std::shared_ptr<const Mesh> mesh;  // of a mesh
-    Primitive primitive;               // of a box or ellipsoid
+    std::shared_ptr<const Mesh> mesh;  // where it is a mesh
+    Primitive primitive;               // where it is a box or an ellipsoid
     std::shared_ptr<const Composite> composite;
     std::vector<Material> materials;  // by slot
-    double clear_area = 0;            // of a mesh: of clear boxes that stand for what is thin
-    bool pictured = false;            // compared by pictures, and as bright as they are
-    bool matched = false;             // likewise, but its error is a distance, if that is larger
-    bool sealed = false;              // as RepresentationSummary's
-    bool unproven = false;   // nobody has looked yet whether it shows as much as the finest
-    bool unsettled = false;  // solids that are matched in area and centroid, but by few rays
+    double clear_area = 0;            // of a mesh's boxes that stand for what is thin
+    CandidateState state = CandidateState::Measured;
+    /// Solids that are matched in area and centroid, but by few rays: settle() uses more. No state:
+    /// solids in all states may be so, those that stay are settled once, and nothing depends on it.
+    bool by_few_rays = false;
 };
 
-/// In POV-Ray's memory, of one.
+/// Brings a candidate to its next state. Throws Error: Internal, where may_follow() says no.
+void come_to(StandInCandidate& candidate, CandidateState next);
+
+/// The bytes of one in POV-Ray's memory.
 uint64_t bytes_of(const StandInCandidate& candidate);
-/// What tracing clear surfaces takes, over opaque ones: the bytes that POV-Ray reads in that time,
-/// of one occurrence where it is used first, as far away that its error is a pixel. Measured
-/// (POV-Ray 3.7, trees, hedges and fences of 4 to 32 clear solids): each surface that a sample
-/// crosses takes 1.7 to 2.4 microseconds, mostly of shadow rays, a byte of a mesh 15 ns to read.
+/// The time that tracing clear surfaces takes, over opaque ones: the bytes that POV-Ray reads in
+/// that time, for one occurrence where it is used first, as far away that its error is a pixel.
+/// Measured (POV-Ray 3.7, trees, hedges and fences of 4 to 32 clear solids): each surface that a
+/// sample crosses takes 1.7 to 2.4 microseconds, mostly of shadow rays, a byte of a mesh 15 ns to
+/// read.
 double tracing_of(const StandInCandidate& candidate);
-/// Of all its occurrences together, tracing included.
+/// The bytes of all its occurrences together, tracing included.
 double bytes_of(const StandInCandidate& candidate, uint64_t uses);
 
 /// The cheapest candidate within an error; infinite when there is none.

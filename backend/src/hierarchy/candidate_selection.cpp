@@ -21,7 +21,7 @@ bool prove_candidates(std::vector<StandInCandidate>& some, std::vector<StandInCa
                       const StandInEvaluator& judge, const Job& job) {
     bool changed = false;
     for (size_t i = some.size(); i-- > 0;) {
-        if (!some[i].unproven)
+        if (some[i].state != CandidateState::Unproven)
             continue;
         StandInCandidate proven = some[i];
         const double next =
@@ -60,7 +60,7 @@ std::vector<StandInCandidate> select_candidates(std::vector<StandInCandidate>& a
                 kept[i], finest, last ? std::numeric_limits<double>::infinity() : kept[i + 1].error,
                 job);
             farther = farther || kept[i].error > before.error;
-            if (before.kind != Kind::Mesh || before.matched == kept[i].matched)
+            if (before.kind != Kind::Mesh || before.state == kept[i].state)
                 continue;
             for (StandInCandidate& candidate : all) {
                 if (candidate.mesh == before.mesh)

@@ -44,7 +44,7 @@ void add(Object& object, std::vector<StandInCandidate>&& made, Model& model,
         representation.summary.kind = candidate.kind;
         representation.summary.error = candidate.error;
         representation.summary.max_error = candidate.max_error;
-        representation.summary.sealed = candidate.sealed;
+        representation.summary.sealed = candidate.state == CandidateState::Sealed;
         if (candidate.kind == Kind::Mesh)
             representation.payload = std::move(candidate.mesh);
         else if (candidate.kind == Kind::Composite)

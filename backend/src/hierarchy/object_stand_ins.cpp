@@ -128,8 +128,8 @@ void seal(std::vector<StandInCandidate>& levels, OpenedGroup& group, const Mesh&
         if (group.drawn_within(error, job).alone >= own)
             continue;
         const FlattenedGroup children = flatten_group(group, error, source, job);
-        levels[i].sealed =
-            !judge.looks_alike(children.mesh, children.materials, finest, error, job);
+        if (!judge.looks_alike(children.mesh, children.materials, finest, error, job))
+            come_to(levels[i], CandidateState::Sealed);
     }
 }
 

@@ -157,7 +157,7 @@ bool StandInEvaluator::prove(StandInCandidate& candidate, double used_to, const 
     const Mesh& mesh = traced_mesh(candidate, solid);
     const ray::SkinPtr skin = skin_of(candidate);
     const ray::MeshScene scene(mesh, skin);
-    candidate.unproven = false;
+    come_to(candidate, CandidateState::Measured);
     if (is_mesh && !shows_as_much(mesh, scene, job))
         return false;
     if (!patches_)
@@ -217,9 +217,9 @@ void StandInEvaluator::settle(StandInCandidate& candidate, const Mesh& finest, d
     constexpr uint32_t kRaysOfMany = 262144;
     constexpr uint64_t kSeedOfMany = 1;
     constexpr double kStands = 1e-9;  // over the size
-    if (!candidate.unsettled)
+    if (!candidate.by_few_rays)
         return;
-    candidate.unsettled = false;
+    candidate.by_few_rays = false;
     // Where all of it is two pixels wide or less nobody sees a few thousandths of that.
     if (candidate.error >= size_)
         return;
@@ -332,7 +332,7 @@ void StandInEvaluator::compare_pictures(StandInCandidate& candidate,
     match(all, 1);  // what these cannot make up for, as of a house of many boards
     const double error = pictures_->of(traced, current).error;
     set_error(candidate, {error, error});
-    candidate.pictured = true;
+    come_to(candidate, CandidateState::Pictured);
 }
 
 void StandInEvaluator::match_brightness(StandInCandidate& candidate, const Mesh& finest,
@@ -342,7 +342,7 @@ void StandInEvaluator::match_brightness(StandInCandidate& candidate, const Mesh&
     // What glows, and what is clear, has no part in the correction: further rounds are nearer.
     constexpr int kRounds = 3;
     const bool glows = std::any_of(materials_.begin(), materials_.end(), emits);
-    if (candidate.pictured || candidate.matched || !is_matched(used_to))
+    if (candidate.state != CandidateState::Measured || !is_matched(used_to))
         return;
     using Pictures = measure::AgreementReference;
     if (!pictures_)
@@ -367,7 +367,7 @@ void StandInEvaluator::match_brightness(StandInCandidate& candidate, const Mesh&
         }
         current = skin_of(candidate.materials);
     }
-    candidate.matched = true;
+    come_to(candidate, CandidateState::Matched);
     if (candidate.kind != Kind::Mesh || layer_)
         return;
     // Near something else that is left a point may have been all that closed a gap. Where the error
@@ -380,7 +380,7 @@ void StandInEvaluator::match_brightness(StandInCandidate& candidate, const Mesh&
 }
 
 void StandInEvaluator::paint(StandInCandidate& candidate) const {
-    if (candidate.kind != Kind::Box || candidate.pictured || !patches_ ||
+    if (candidate.kind != Kind::Box || candidate.state == CandidateState::Pictured || !patches_ ||
         candidate.materials[0].alpha_mode != AlphaMode::Opaque || emits(candidate.materials[0]))
         return;
     std::optional<solids::PaintedBox> painted = solids::painted_box(

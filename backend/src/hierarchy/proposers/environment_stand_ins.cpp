@@ -80,7 +80,7 @@ void add_environment_stand_ins(std::vector<StandInCandidate>& candidates, const 
         append(both, solids, {}, static_cast<uint16_t>(materials.size()));
         StandInCandidate candidate;
         candidate.mesh = std::make_shared<const Mesh>(std::move(both));
-        candidate.unproven = true;
+        candidate.state = CandidateState::Unproven;
         candidate.materials = materials;
         for (const Attributes& own : beside.attributes)
             candidate.materials.push_back(solids::mean_material(own));

@@ -40,7 +40,7 @@ void add_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
         StandInCandidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
-        candidate.unproven = true;
+        candidate.state = CandidateState::Unproven;
         judge.measure_mesh(candidate, job, most, known);
         coarser = std::min(candidate.error, std::max(most, useless));
         if (!std::isfinite(coarser))

@@ -32,12 +32,13 @@ void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& boun
         candidate.kind = kind;
         candidate.primitive = primitive;
         candidate.materials = {solids::clear_material(material, opacity)};
-        candidate.unproven = !by_pictures;
-        candidate.unsettled = true;
-        if (by_pictures)
+        candidate.by_few_rays = true;
+        if (by_pictures) {
             judge.compare_pictures(candidate, {}, job);
-        else
+        } else {
+            candidate.state = CandidateState::Unproven;
             judge.measure_primitive(candidate, job);
+        }
         candidates.push_back(std::move(candidate));
     };
     // Nothing sinks into the plane that its original stands on. What floats above it may be the
@@ -165,7 +166,7 @@ void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
     }
     for (const solids::ClusteredComposite& level : levels) {
         StandInCandidate candidate = candidate_of(level);
-        candidate.unsettled = options.shape;
+        candidate.by_few_rays = options.shape;
         judge.compare_pictures(candidate, {}, job);
         candidates.push_back(std::move(candidate));
     }

@@ -152,6 +152,7 @@ Mesh rest_of(const Mesh& level, const ThinParts& thin, const StandInEvaluator& j
 StandInCandidate widened_level(const StandInCandidate& level, const Mesh& others,
                                const ThinParts& thin, double width, double floor) {
     StandInCandidate out = level;
+    out.state = CandidateState::Measured;
     Composite boxes;
     out.clear_area = 0;
     for (size_t i = 0; i < thin.parts.size(); ++i) {
@@ -179,7 +180,7 @@ void widen_thin_parts(std::vector<StandInCandidate>& kept, const Mesh& finest,
     const double floor = bound_of(finest.positions).box.low.z;
     const auto is_level =
         [&](const StandInCandidate& candidate) {  // no pruned mesh and no painted box
-            return candidate.kind == Kind::Mesh && !candidate.pictured &&
+            return candidate.kind == Kind::Mesh && candidate.state != CandidateState::Pictured &&
                    candidate.materials.size() == materials.size() &&
                    candidate.mesh->colors.empty() == finest.colors.empty();
         };
@@ -224,7 +225,6 @@ void widen_thin_parts(std::vector<StandInCandidate>& kept, const Mesh& finest,
             error = std::max({error, 0.5 * width, seen_from(width)});
             if (made.mesh->triangles.size() > most || !(error < next))
                 break;
-            made.matched = false;
             judge.match_brightness(made, finest, next, job);
             made.error = error;
             made.max_error = std::max(level.max_error, error);
