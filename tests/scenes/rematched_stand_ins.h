@@ -3,7 +3,9 @@
 // rays. For tests and for tests/bench/replace_shapes.cpp.
 #pragma once
 
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/evaluators/brightness_match.h"
+#include "hierarchy/evaluators/patch_error.h"
+#include "hierarchy/finest.h"
 #include "measure/pictures/picture_agreement.h"
 #include "measure/visible/visible_attributes.h"
 #include "simplify/simplify.h"
@@ -49,11 +51,13 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     const std::vector<Material> materials = paint(mesh);
     image::TexelCache texels;
     hierarchy::BuildSettings settings;
-    hierarchy::StandInEvaluator judge(mesh, materials, texels, settings, false, settings.seed, 0,
-                                      {});
-    judge.measure_finest(mesh, {});
-    judge.take_pictures(mesh, coarse, {});
-    const Attributes wanted = judge.attributes();
+    const hierarchy::MeasuredFinest finest =
+        hierarchy::measure_finest(mesh, materials, texels, settings, {settings.seed}, {});
+    hierarchy::FinestPictures taken(finest);
+    taken.take(
+        mesh,
+        coarse ? measure::AgreementReference::kCoarseSide : measure::AgreementReference::kSide, {});
+    const Attributes wanted = finest.attributes;
     const Bound bound = bound_of(mesh.positions);
     const auto skin_of = [&](const std::vector<Material>& own) {
         return std::make_shared<const ray::MeshSkin>(own, texels);
@@ -77,7 +81,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     std::vector<Rematched> out;
     const auto add = [&](const std::string& name, hierarchy::StandInCandidate candidate,
                          Mesh drawn) {
-        judge.match_brightness(candidate, mesh, std::numeric_limits<double>::infinity(), {});
+        match_brightness(candidate, finest, taken, std::numeric_limits<double>::infinity(), {});
         glm::dvec3 light(0.0);
         for (const measure::AgreementReference& picture : pictures)
             light += picture.of(drawn, skin_of(candidate.materials)).light /
@@ -125,7 +129,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     collapsed.mesh = std::make_shared<const Mesh>(
         simplify::simplify_mesh(mesh, std::max<size_t>(8, mesh.triangles.size() / 10)));
     collapsed.materials = materials;
-    if (judge.shows_as_much(*collapsed.mesh, {}))  // else it is none
+    if (shows_as_much(*collapsed.mesh, finest, {}))  // else it is none
         add("collapsed", collapsed, *collapsed.mesh);
     return out;
 }

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/candidate_selection.h"
 
+#include "hierarchy/evaluators/brightness_match.h"
+#include "hierarchy/evaluators/lamp_glow.h"
+#include "hierarchy/evaluators/patch_error.h"
+#include "solids/painted_box.h"
+
 #include <algorithm>
 #include <iterator>
 #include <limits>
@@ -15,10 +20,26 @@ bool is_same(const StandInCandidate& a, const StandInCandidate& b) {
            a.primitive.half_size == b.primitive.half_size;
 }
 
+/// Makes a box a mesh of vertex colors where its sides are not of one color.
+void paint_sides(StandInCandidate& candidate, const MeasuredFinest& finest) {
+    if (candidate.kind != Kind::Box || candidate.state == CandidateState::Pictured ||
+        !finest.patches || candidate.materials[0].alpha_mode != AlphaMode::Opaque ||
+        emits(candidate.materials[0]))
+        return;
+    std::optional<solids::PaintedBox> painted = solids::painted_box(
+        candidate.primitive, candidate.materials[0],
+        finest.patches->fitted_vertex_colors(tessellate_box(candidate.primitive), finest.scene()));
+    if (!painted)
+        return;
+    candidate.kind = Kind::Mesh;
+    candidate.mesh = std::make_shared<const Mesh>(std::move(painted->mesh));
+    candidate.materials = {std::move(painted->material)};
+}
+
 }  // namespace
 
 bool prove_candidates(std::vector<StandInCandidate>& some, std::vector<StandInCandidate>& all,
-                      const StandInEvaluator& judge, const Job& job) {
+                      const MeasuredFinest& finest, const Job& job) {
     bool changed = false;
     for (size_t i = some.size(); i-- > 0;) {
         if (some[i].state != CandidateState::Unproven)
@@ -26,7 +47,7 @@ bool prove_candidates(std::vector<StandInCandidate>& some, std::vector<StandInCa
         StandInCandidate proven = some[i];
         const double next =
             i + 1 < some.size() ? some[i + 1].error : std::numeric_limits<double>::infinity();
-        const bool good = judge.prove(proven, next, job);
+        const bool good = prove(proven, finest, next, job);
         changed = changed || !good || proven.error > some[i].error;
         for (size_t k = all.size(); k-- > 0;) {
             if (!is_same(all[k], some[i]))
@@ -45,20 +66,20 @@ bool prove_candidates(std::vector<StandInCandidate>& some, std::vector<StandInCa
 }
 
 std::vector<StandInCandidate> select_candidates(std::vector<StandInCandidate>& all,
-                                                const Keep& keep, StandInEvaluator& judge,
-                                                const Mesh& finest, const Job& job) {
+                                                const Keep& keep, const MeasuredFinest& finest,
+                                                FinestPictures& pictures, const Job& job) {
     for (;;) {
         std::vector<StandInCandidate> kept = all;
         keep(kept);
-        if (prove_candidates(kept, all, judge, job))
+        if (prove_candidates(kept, all, finest, job))
             continue;
         bool farther = false;
         for (size_t i = 0; i < kept.size(); ++i) {
             const bool last = i + 1 == kept.size();
             const StandInCandidate before = kept[i];
-            judge.match_brightness(
-                kept[i], finest, last ? std::numeric_limits<double>::infinity() : kept[i + 1].error,
-                job);
+            match_brightness(kept[i], finest, pictures,
+                             last ? std::numeric_limits<double>::infinity() : kept[i + 1].error,
+                             job);
             farther = farther || kept[i].error > before.error;
             if (before.kind != Kind::Mesh || before.state == kept[i].state)
                 continue;
@@ -73,10 +94,10 @@ std::vector<StandInCandidate> select_candidates(std::vector<StandInCandidate>& a
 }
 
 void paint_boxes(std::vector<StandInCandidate>& kept, const Keep& keep,
-                 const StandInEvaluator& judge) {
+                 const MeasuredFinest& finest) {
     std::vector<StandInCandidate> painted = kept;
     for (StandInCandidate& candidate : painted)
-        judge.paint(candidate);
+        paint_sides(candidate, finest);
     keep(painted);
     if (!painted.empty())
         kept = std::move(painted);

@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "geometry/closest_on_triangle.h"
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/counted_error.h"
 #include "measure/visible/convex_bound.h"
 #include "measure/visible/surface_inertia.h"
 
@@ -21,7 +21,7 @@ constexpr size_t kMostPlaces = 8;  // of a flat thing that are looked at
 constexpr size_t kMostOccurrences = size_t{1} << 20;
 constexpr uint64_t kMostWork = 400'000'000;  // boxes and triangles looked at
 constexpr int kSamples = 32;
-constexpr double kNearLayers = 1.0 / 16;  // over the width: see kLayerWidth of the judge
+constexpr double kNearLayers = 1.0 / 16;  // over the width: see kLayerWidth in counted_error.cpp
 
 /// The surface of a leaf.
 struct LeafSurface {

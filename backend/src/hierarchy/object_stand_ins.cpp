@@ -2,8 +2,11 @@
 #include "hierarchy/object_stand_ins.h"
 
 #include "hierarchy/candidate_selection.h"
+#include "hierarchy/counted_error.h"
 #include "hierarchy/environment_objects.h"
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/evaluators/brightness_match.h"
+#include "hierarchy/evaluators/distance_error.h"
+#include "hierarchy/evaluators/solid_settling.h"
 #include "hierarchy/flattened_group.h"
 #include "hierarchy/proposers/collapse_levels.h"
 #include "hierarchy/proposers/environment_stand_ins.h"
@@ -24,8 +27,6 @@ namespace {
 
 // So many things drawn in a group may be a crowd.
 constexpr size_t kManyChildren = 32;
-// Rays from a triangle that decide whether anything outside can see it.
-constexpr int kRaysPerTriangle = 16;
 
 /// What a group's children cost within rising errors.
 class ChildCosts {
@@ -117,8 +118,8 @@ bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Ha
 /// Seals those of a group's levels (finest first) that the cut would open for children which cost
 /// less, but do not look like the group where the next level takes over. The same children serve
 /// from less error on, where they look no worse.
-void seal(std::vector<StandInCandidate>& levels, OpenedGroup& group, const Mesh& finest,
-          const MeshSource& source, StandInEvaluator& judge, const Job& job) {
+void seal(std::vector<StandInCandidate>& levels, OpenedGroup& group, const MeasuredFinest& finest,
+          FinestPictures& pictures, const MeshSource& source, const Job& job) {
     constexpr double kFarthest = 4;  // over the radius: all children are as coarse as they get
     double next = kFarthest * group.model().objects[group.index()].bound().radius;
     for (size_t i = levels.size(); i-- > 0;) {
@@ -128,7 +129,7 @@ void seal(std::vector<StandInCandidate>& levels, OpenedGroup& group, const Mesh&
         if (group.drawn_within(error, job).alone >= own)
             continue;
         const FlattenedGroup children = flatten_group(group, error, source, job);
-        if (!judge.looks_alike(children.mesh, children.materials, finest, error, job))
+        if (!looks_alike(children.mesh, children.materials, error, finest, pictures, job))
             come_to(levels[i], CandidateState::Sealed);
     }
 }
@@ -150,13 +151,13 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
     if (mesh->empty())
         return out;
     const std::vector<Material> materials = materials_of(model, finest);
-    StandInEvaluator judge(*mesh, materials, texels, settings,
-                           object.role == ObjectRole::Environment, seed_of(object, settings), 0,
-                           job);
-    judge.measure_finest(*mesh, job);
-    if (surroundings.layers[leaf] != 0)
-        judge.count_layers();
-    out.attributes = judge.attributes();
+    FinestOptions options{seed_of(object, settings)};
+    options.environment = object.role == ObjectRole::Environment;
+    options.in_layers = surroundings.layers[leaf] != 0;
+    const MeasuredFinest original =
+        measure_finest(*mesh, materials, texels, settings, options, job);
+    FinestPictures pictures(original);
+    out.attributes = original.attributes;
     if (out.attributes.empty())
         return out;
     LevelLimits wanted{[](size_t) { return std::numeric_limits<double>::infinity(); }};
@@ -167,23 +168,21 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
     std::optional<SolidCandidates> replacements;
     if (object.role != ObjectRole::Environment) {
         replacements.emplace(
-            *mesh, [&] { return prune::find_crowd(*mesh); }, whole, judge, job);
+            *mesh, [&] { return prune::find_crowd(*mesh); }, whole, original, pictures, job);
         wanted.solid = replacements->nearest_solid();
         wanted.told = kOff * whole.bound.radius;
     }
-    add_levels(out.candidates, *mesh, materials, targets_of(*mesh, settings), wanted, judge, job);
+    add_levels(out.candidates, *mesh, targets_of(*mesh, settings), wanted, original, job);
     if (replacements)
-        replacements->add(out.candidates, materials, settings, seed_of(object, settings), job);
+        replacements->add(out.candidates, settings.level_ratio, job);
     const auto keep = [&](std::vector<StandInCandidate>& candidates) {
         keep_pareto_front(candidates, finest.summary.cost.bytes, uses);
     };
-    out.candidates = select_candidates(out.candidates, keep, judge, *mesh, job);
-    for (StandInCandidate& candidate : out.candidates)
-        judge.settle(candidate, *mesh, whole.bound.box.low.z, job);
-    paint_boxes(out.candidates, keep, judge);
+    out.candidates = select_candidates(out.candidates, keep, original, pictures, job);
+    settle_solids(out.candidates, original, whole.bound.box.low.z, job);
+    paint_boxes(out.candidates, keep, original);
     if (object.role != ObjectRole::Environment)
-        widen_thin_parts(out.candidates, *mesh, materials, texels, seed_of(object, settings), judge,
-                         job);
+        widen_thin_parts(out.candidates, original, pictures, job);
     return out;
 }
 
@@ -204,19 +203,21 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
     const FlattenedGroup reference = flatten_group(opened, fine, source, job);
     if (reference.mesh.empty())
         return out;
-    const uint64_t seed = seed_of(object, settings);
-    StandInEvaluator judge(reference.mesh, reference.materials, texels, settings, environment, seed,
-                           reference.child_error, job, kRaysPerTriangle);
-    judge.measure_roughly();
-    judge.measure_finest(reference.mesh, job);
-    if (std::set<ObjectIndex> asked; lies_on_a_layer(model, group, surroundings.layers, asked))
-        judge.count_layers();
-    out.attributes = judge.attributes();
+    std::set<ObjectIndex> asked;
+    FinestOptions options{seed_of(object, settings)};
+    options.environment = environment;
+    options.in_layers = lies_on_a_layer(model, group, surroundings.layers, asked);
+    options.group = true;
+    options.child_error = reference.child_error;
+    const MeasuredFinest original =
+        measure_finest(reference.mesh, reference.materials, texels, settings, options, job);
+    FinestPictures pictures(original);
+    out.attributes = original.attributes;
     if (out.attributes.empty())
         return out;
 
     std::vector<uint32_t> occurrence = reference.occurrence;
-    Mesh shell = without_hidden(reference.mesh, judge.seen_triangles(), occurrence);
+    Mesh shell = without_hidden(reference.mesh, original.seen_triangles(), occurrence);
     const double floor = bound_of(shell.positions).box.low.z;
     // A stand-in is off by as much as the reference or more, and no use where it costs more than
     // what the children use there.
@@ -242,7 +243,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
     std::optional<SolidCandidates> replacements;
     if (!environment) {
         replacements.emplace(
-            shell, [&] { return crowd_in(shell, occurrence); }, whole, judge, job);
+            shell, [&] { return crowd_in(shell, occurrence); }, whole, original, pictures, job);
         const double nearest = replacements->nearest_solid();
         const double own = bytes_per_occurrence(Kind::Box, kBytesPerPrimitive, uses[group]) +
                            static_cast<double>(kBytesPerOccurrence);
@@ -258,15 +259,14 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
         return whole.cheaper_from(
             bytes_per_occurrence(Kind::Mesh, triangles * kBytesPerTriangle, uses[group]));
     };
-    add_levels(out.candidates, shell, reference.materials, targets, wanted, judge, job);
+    add_levels(out.candidates, shell, targets, wanted, original, job);
     if (replacements)
-        replacements->add(out.candidates, reference.materials, settings, seed, job);
+        replacements->add(out.candidates, settings.level_ratio, job);
     std::vector<uint8_t> around;  // by triangle: whether it is environment
     for (const uint32_t one : reference.occurrence)
         around.push_back(reference.environment[one] != 0 || reference.placement[one] == ground ? 1
                                                                                                : 0);
-    add_environment_stand_ins(out.candidates, reference.mesh, around, reference.materials, settings,
-                              seed, judge, job);
+    add_environment_stand_ins(out.candidates, around, original, job);
 
     // A stand-in that costs more than what the children would use instead is none: parts that many
     // groups share are cheap, one mesh for each of the groups is not. It is used from its own error
@@ -287,7 +287,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
         }
     };
     std::vector<StandInCandidate> useful =
-        select_candidates(out.candidates, keep, judge, reference.mesh, job);
+        select_candidates(out.candidates, keep, original, pictures, job);
     const bool saves = !useful.empty();
     if (!saves) {
         // Every group has a stand-in, even one that saves nothing but the occurrences: the
@@ -296,25 +296,22 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
             useful = out.candidates;
             keep_pareto_front(useful, ~uint64_t{0});
             useful = {useful.back()};
-            prove_candidates(useful, out.candidates, judge, job);
+            prove_candidates(useful, out.candidates, original, job);
         }
         if (useful.empty()) {
             StandInCandidate all;
             all.mesh = std::make_shared<Mesh>(std::move(shell));
             all.materials = reference.materials;
-            judge.measure_mesh(all, job);
+            measure_mesh(all, original, job);
             useful.push_back(std::move(all));
         }
-        judge.match_brightness(useful[0], reference.mesh, std::numeric_limits<double>::infinity(),
-                               job);
+        match_brightness(useful[0], original, pictures, std::numeric_limits<double>::infinity(),
+                         job);
     }
-    for (StandInCandidate& candidate : useful) {
-        if (candidate.kind == Kind::Composite)
-            judge.settle(candidate, reference.mesh, floor, job);
-    }
+    settle_solids(useful, original, floor, job);
     if (saves) {  // else children are the cheaper choice, however they look
-        paint_boxes(useful, keep, judge);
-        seal(useful, opened, reference.mesh, source, judge, job);
+        paint_boxes(useful, keep, original);
+        seal(useful, opened, original, pictures, source, job);
     }
     out.candidates = std::move(useful);
     return out;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/proposers/environment_stand_ins.h"
 
+#include "hierarchy/evaluators/distance_error.h"
 #include "measure/visible/visible_attributes.h"
 #include "simplify/simplify.h"
 #include "solids/composite_replacement.h"
@@ -38,35 +39,32 @@ std::vector<SolidsInEnvironment> singles(const Attributes& attributes, const Bou
 
 }  // namespace
 
-void add_environment_stand_ins(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
+void add_environment_stand_ins(std::vector<StandInCandidate>& candidates,
                                const std::vector<uint8_t>& environment,
-                               const std::vector<Material>& materials,
-                               const BuildSettings& settings, uint64_t seed,
-                               StandInEvaluator& judge, const Job& job) {
+                               const MeasuredFinest& finest, const Job& job) {
+    const std::vector<Material>& materials = finest.materials;
     std::vector<uint8_t> others;
     others.reserve(environment.size());
     for (const uint8_t one : environment)
         others.push_back(one != 0 ? 0 : 1);
-    const Mesh around = subset(mesh, environment);
-    const Mesh rest = subset(mesh, others);
-    if (around.empty() || rest.empty() || judge.refracts())
+    const Mesh around = subset(finest.mesh, environment);
+    const Mesh rest = subset(finest.mesh, others);
+    if (around.empty() || rest.empty() || finest.refracts())
         return;
-    measure::VisibleOptions options;
-    options.rays = settings.rays;
-    options.seed = seed;
-    const Attributes attributes = measure::measure_visible(rest, ray::MeshScene(rest, judge.skin()),
-                                                           judge.skin(), options, {}, job)
-                                      .attributes;
+    const Attributes attributes =
+        measure::measure_visible(rest, ray::MeshScene(rest, finest.skin), finest.skin,
+                                 finest.visible_options(finest.rays), {}, job)
+            .attributes;
     if (attributes.empty())
         return;
     std::vector<SolidsInEnvironment> all = singles(attributes, bound_of(rest.positions));
-    solids::CompositeOptions rough{seed};
+    solids::CompositeOptions rough{finest.options.seed};
     rough.shape = false;
     rough.rounds = 0;
-    rough.rays = static_cast<uint32_t>(settings.rays / 4);
+    rough.rays = static_cast<uint32_t>(finest.rays / 4);
     rough.most = kMostBeside;
     for (solids::ClusteredComposite& level :
-         solids::composites(rest, judge.skin(), attributes, rough, job))
+         solids::composites(rest, finest.skin, attributes, rough, job))
         all.push_back({std::move(level.composite), std::move(level.attributes)});
     for (const SolidsInEnvironment& beside : all) {
         job.check();
@@ -84,7 +82,7 @@ void add_environment_stand_ins(std::vector<StandInCandidate>& candidates, const 
         candidate.materials = materials;
         for (const Attributes& own : beside.attributes)
             candidate.materials.push_back(solids::mean_material(own));
-        judge.measure_mesh(candidate, job);
+        measure_mesh(candidate, finest, job);
         candidates.push_back(std::move(candidate));
     }
 }

@@ -4,18 +4,16 @@
 #pragma once
 
 #include "hierarchy/candidate.h"
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/finest.h"
 
 namespace lodestone::hierarchy {
 
 /// One mesh each: the environment simplified to about as many triangles as what stands on it has,
 /// which is a box, an ellipsoid, or a composite of four or eight. Judged by distance, to be proven
-/// by patches. `mesh`: the finest; `environment`: by triangle. Nothing where it has no environment,
+/// by patches. `environment`: by triangle of the finest. Nothing where it has no environment,
 /// or nothing else.
-void add_environment_stand_ins(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
+void add_environment_stand_ins(std::vector<StandInCandidate>& candidates,
                                const std::vector<uint8_t>& environment,
-                               const std::vector<Material>& materials,
-                               const BuildSettings& settings, uint64_t seed,
-                               StandInEvaluator& judge, const Job& job);
+                               const MeasuredFinest& finest, const Job& job);
 
 }  // namespace lodestone::hierarchy

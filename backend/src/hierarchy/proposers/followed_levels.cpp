@@ -2,7 +2,9 @@
 #include "hierarchy/proposers/followed_levels.h"
 
 #include "deform/level_binding.h"
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/counted_error.h"
+#include "hierarchy/evaluators/distance_error.h"
+#include "hierarchy/evaluators/patch_error.h"
 #include "hierarchy/proposers/collapse_levels.h"
 #include "simplify/simplify.h"
 
@@ -26,14 +28,13 @@ public:
     }
 
     /// Metres; 0 where the shape decides.
-    double of(const Mesh& level, const std::vector<Material>& materials, StandInEvaluator& judge,
-              const Job& job) const {
+    double of(const Mesh& level, const MeasuredFinest& finest, const Job& job) const {
         if (!bare_)
             return 0;
         StandInCandidate candidate;
         candidate.mesh = std::make_shared<Mesh>(level);
-        candidate.materials = materials;
-        judge.measure_mesh(candidate, job);
+        candidate.materials = finest.materials;
+        measure_mesh(candidate, finest, job);
         const double bare = bare_->of(level, {}, job).error;
         return candidate.error > 1.01 * bare ? candidate.error : 0;
     }
@@ -56,10 +57,11 @@ segment::BoundLevels bound_levels_of_leaf(const PoseBinding& bind, const BuildSe
     if (targets.empty())
         return out;
     const std::vector<Material> materials = materials_of(*bind.model, finest);
-    StandInEvaluator judge(*mesh, materials, texels, settings,
-                           bind.object->role == ObjectRole::Environment, bind.hash, 0, job);
-    judge.measure_finest(*mesh, job);
-    if (judge.attributes().empty())
+    FinestOptions options{bind.hash};
+    options.environment = bind.object->role == ObjectRole::Environment;
+    const MeasuredFinest original =
+        measure_finest(*mesh, materials, texels, settings, options, job);
+    if (original.attributes.empty())
         return out;
     std::vector<std::vector<glm::vec3>> others;
     const std::vector<uint32_t> points = deform::points_of(*mesh, *bind.object->pose);
@@ -77,13 +79,13 @@ segment::BoundLevels bound_levels_of_leaf(const PoseBinding& bind, const BuildSe
          simplify::simplify_traced(visible, others, targets, {}, job)) {
         if (level.mesh.empty())
             continue;
-        judge.repaint(level.mesh, job);
-        if (!judge.shows_as_much(level.mesh, job))
+        repaint(level.mesh, original, job);
+        if (!shows_as_much(level.mesh, original, job))
             continue;
         std::optional<deform::BoundLevel> bound = binder.bind(std::move(level));
         if (!bound)
             continue;
-        bound->look_error = look_error.of(bound->mesh, materials, judge, job);
+        bound->look_error = look_error.of(bound->mesh, original, job);
         out.push_back(std::move(*bound));
     }
     return out;

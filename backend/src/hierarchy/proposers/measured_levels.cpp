@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/proposers/measured_levels.h"
 
+#include "hierarchy/evaluators/distance_error.h"
 #include "hierarchy/evaluators/lamp_glow.h"
 #include "hierarchy/proposers/collapse_levels.h"
 
@@ -11,8 +12,9 @@
 namespace lodestone::hierarchy {
 
 void add_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
-                const std::vector<Material>& materials, const std::vector<size_t>& targets,
-                const LevelLimits& wanted, StandInEvaluator& judge, const Job& job) {
+                const std::vector<size_t>& targets, const LevelLimits& wanted,
+                const MeasuredFinest& finest, const Job& job) {
+    const std::vector<Material>& materials = finest.materials;
     // A level is hardly ever more than so many times nearer than the next coarser one (of 836 pairs
     // in groups: a tenth; of 275 that would have to be, one).
     constexpr double kMostNearer = 4;
@@ -36,12 +38,12 @@ void add_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
             coarser /= kMostNearer;
             continue;
         }
-        const measure::DeviationReference::RepaintResult known = judge.repaint(level, job, most);
+        const measure::DeviationReference::RepaintResult known = repaint(level, finest, job, most);
         StandInCandidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
         candidate.materials = materials;
         candidate.state = CandidateState::Unproven;
-        judge.measure_mesh(candidate, job, most, known);
+        measure_mesh(candidate, finest, job, most, known);
         coarser = std::min(candidate.error, std::max(most, useless));
         if (!std::isfinite(coarser))
             coarser = most;  // it is farther than that

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "hierarchy/candidate.h"
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/finest.h"
 
 #include <functional>
 #include <limits>
@@ -23,7 +23,7 @@ struct LevelLimits {
 /// Levels of so many triangles, fine to coarse. Measured from the coarsest on: what will not be
 /// near enough, by the one before it, is not measured at all.
 void add_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
-                const std::vector<Material>& materials, const std::vector<size_t>& targets,
-                const LevelLimits& wanted, StandInEvaluator& judge, const Job& job);
+                const std::vector<size_t>& targets, const LevelLimits& wanted,
+                const MeasuredFinest& finest, const Job& job);
 
 }  // namespace lodestone::hierarchy

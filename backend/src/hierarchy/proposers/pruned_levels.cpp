@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/proposers/pruned_levels.h"
 
+#include "hierarchy/evaluators/visible_share.h"
 #include "hierarchy/proposers/collapse_levels.h"
 #include "simplify/simplify.h"
 
@@ -95,9 +96,8 @@ std::vector<Material> contrasted(const std::vector<Material>& materials, const C
 
 class CrowdPruner {
 public:
-    CrowdPruner(const Mesh& mesh, const std::vector<Material>& materials, const Crowd& crowd,
-                const StandInEvaluator& judge, const Job& job)
-        : mesh_(mesh), materials_(materials), crowd_(crowd), judge_(judge), job_(job) {
+    CrowdPruner(const Mesh& mesh, const Crowd& crowd, const MeasuredFinest& finest, const Job& job)
+        : mesh_(mesh), crowd_(crowd), finest_(finest), job_(job) {
         std::vector<uint8_t> keep(mesh.triangles.size(), 0);
         std::vector<uint32_t> tags(mesh.triangles.size(), 0);
         for (size_t i = 0; i < keep.size(); ++i) {
@@ -110,7 +110,7 @@ public:
             rest_slots_.insert(mesh.slot(i));
         }
         rest_ = subset(mesh, keep);
-        visible_ = judge.visible_by_tag(mesh, tags, 1 + crowd.slots.size(), job);
+        visible_ = visible_by_tag(mesh, tags, 1 + crowd.slots.size(), finest, job);
         visible_.erase(visible_.begin());
     }
 
@@ -142,11 +142,12 @@ public:
             std::vector<uint32_t> tags(level.triangles.size(), 0);
             for (size_t t = 0; t < crowd.kind_of.size(); ++t)
                 tags[t] = 1 + crowd.kind_of[t];
-            if (i == kCorrections || correct(growth, judge_.visible_by_tag_of_level(
-                                                         level, tags, 1 + growth.size(), job_))) {
+            if (i == kCorrections ||
+                correct(growth,
+                        visible_by_tag_of_level(level, tags, 1 + growth.size(), finest_, job_))) {
                 out.mesh = std::make_shared<Mesh>(std::move(level));
                 out.materials =
-                    contrasted(materials_, crowd_, rest_slots_, visible_, crowd.variance);
+                    contrasted(finest_.materials, crowd_, rest_slots_, visible_, crowd.variance);
                 return out;
             }
         }
@@ -201,9 +202,8 @@ private:
     }
 
     const Mesh& mesh_;
-    const std::vector<Material>& materials_;
     const Crowd& crowd_;
-    const StandInEvaluator& judge_;
+    const MeasuredFinest& finest_;
     const Job& job_;
     Mesh rest_;
     std::set<uint16_t> rest_slots_;
@@ -213,10 +213,10 @@ private:
 }  // namespace
 
 void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
-                       const std::vector<Material>& materials, const Crowd& crowd,
-                       double level_ratio, size_t most, uint64_t seed, StandInEvaluator& judge,
+                       const Crowd& crowd, double level_ratio, size_t most,
+                       const MeasuredFinest& finest, const FinestPictures& pictures,
                        const Job& job) {
-    const CrowdPruner thinner(mesh, materials, crowd, judge, job);
+    const CrowdPruner thinner(mesh, crowd, finest, job);
     const std::vector<PruningStep> steps =
         steps_of(crowd, thinner.rest().triangles.size(), level_ratio);
     const std::vector<Mesh> rests = rests_of(thinner.rest(), steps, job);
@@ -226,7 +226,7 @@ void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& me
     if (crowd.sizes_differ())
         orders.push_back(prune::PruneOrder::Largest);
     for (const prune::PruneOrder kind : orders) {
-        const std::vector<uint32_t> order = prune::prune_order(crowd, kind, seed);
+        const std::vector<uint32_t> order = prune::prune_order(crowd, kind, finest.options.seed);
         for (size_t i = 0; i < steps.size(); ++i) {
             job.check();
             if (steps[i].crowd_triangles + rests[i].triangles.size() > most)
@@ -234,7 +234,7 @@ void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& me
             StandInCandidate candidate = thinner.thinned(order, steps[i], rests[i]);
             if (candidate.mesh->triangles.size() >= mesh.triangles.size())
                 continue;
-            judge.compare_pictures(candidate, own, job);
+            compare_pictures(candidate, own, finest, pictures, job);
             const bool enough = candidate.error >= bound.radius;  // any solid will do
             candidates.push_back(std::move(candidate));
             if (enough)

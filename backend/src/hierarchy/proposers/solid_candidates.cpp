@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/proposers/solid_candidates.h"
 
+#include "hierarchy/evaluators/distance_error.h"
 #include "hierarchy/proposers/pruned_levels.h"
 #include "solids/composite_replacement.h"
 #include "solids/keep_on_floor.h"
@@ -23,21 +24,25 @@ bool is_foliage(const prune::Crowd& crowd) {
            crowd.triangles <= kTriangles * crowd.parts.size();
 }
 
-/// A box and an ellipsoid. `by_pictures`: of something that is not solid; there are clear ones too.
-void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& bound, bool by_pictures,
-                    StandInEvaluator& judge, const Job& job) {
-    const Material material = solids::mean_material(judge.attributes());
+/// A box and an ellipsoid, compared by pictures, if there are any: something that is not solid has
+/// clear ones too. One that is farther off than another may be told an infinite error: they cost
+/// the same.
+void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& bound,
+                    const MeasuredFinest& finest, const FinestPictures* pictures, const Job& job) {
+    const Material material = solids::mean_material(finest.attributes);
+    double nearest = std::numeric_limits<double>::infinity();
     const auto add = [&](Kind kind, const Primitive& primitive, double opacity) {
         StandInCandidate candidate;
         candidate.kind = kind;
         candidate.primitive = primitive;
         candidate.materials = {solids::clear_material(material, opacity)};
         candidate.by_few_rays = true;
-        if (by_pictures) {
-            judge.compare_pictures(candidate, {}, job);
+        if (pictures) {
+            compare_pictures(candidate, {}, finest, *pictures, job);
         } else {
             candidate.state = CandidateState::Unproven;
-            judge.measure_primitive(candidate, job);
+            measure_primitive(candidate, finest, nearest, job);
+            nearest = std::min(nearest, candidate.error);
         }
         candidates.push_back(std::move(candidate));
     };
@@ -52,15 +57,15 @@ void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& boun
         if (reach.low - floor > kStands * (reach.high - reach.low))
             add(kind, solids::standing_on(primitive, is_box, floor), 1);
     };
-    if (const auto box = solids::fit_box(judge.attributes(), bound))
+    if (const auto box = solids::fit_box(finest.attributes, bound))
         add_standing(Kind::Box, *box);
-    if (const auto ellipsoid = solids::fit_ellipsoid(judge.attributes(), bound))
+    if (const auto ellipsoid = solids::fit_ellipsoid(finest.attributes, bound))
         add_standing(Kind::Ellipsoid, *ellipsoid);
-    if (!by_pictures)
+    if (!pictures)
         return;
-    if (const auto box = solids::fit_clear_box(judge.attributes(), bound))
+    if (const auto box = solids::fit_clear_box(finest.attributes, bound))
         add(Kind::Box, solids::kept_above(box->primitive, true, floor), box->opacity);
-    if (const auto ellipsoid = solids::fit_clear_ellipsoid(judge.attributes(), bound))
+    if (const auto ellipsoid = solids::fit_clear_ellipsoid(finest.attributes, bound))
         add(Kind::Ellipsoid, solids::kept_above(ellipsoid->primitive, false, floor),
             ellipsoid->opacity);
 }
@@ -116,8 +121,8 @@ bool would_pay(const StandInCandidate& composite, double error,
 
 /// `airy`: clear ones too, of these parts, of at most so many solids.
 void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh, bool airy,
-                    const prune::Crowd& crowd, size_t most, uint64_t seed, StandInEvaluator& judge,
-                    const ReplacedObject& whole, const Job& job) {
+                    const prune::Crowd& crowd, size_t most, const MeasuredFinest& finest,
+                    const FinestPictures& pictures, const ReplacedObject& whole, const Job& job) {
     // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one
     // that shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or
     // more): only those that may pay by these are matched. Fewer solids are hardly ever much
@@ -127,7 +132,7 @@ void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
     constexpr uint32_t kFewRays = 1024;
     constexpr uint32_t kFewSamples = 2048;
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
-    solids::CompositeOptions options{seed};
+    solids::CompositeOptions options{finest.options.seed};
     options.shape = !airy;
     options.most = most;
     solids::CompositeOptions few = options;
@@ -140,10 +145,10 @@ void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
     exact.least = exact.most = 0;
     std::vector<StandInCandidate> rough;  // fewest solids first
     for (const solids::ClusteredComposite& level :
-         solids::composites(mesh, judge.skin(), judge.attributes(), few, job))
+         solids::composites(mesh, finest.skin, finest.attributes, few, job))
         rough.push_back(candidate_of(level));
     for (bool more = true; more && !rough.empty(); rough.pop_back()) {
-        judge.compare_pictures(rough.back(), {}, job);
+        compare_pictures(rough.back(), {}, finest, pictures, job);
         const double error = kNearer * rough.back().error;
         if (would_pay(rough.back(), error, candidates, whole)) {
             // It may be one of fewer than were asked for.
@@ -158,16 +163,16 @@ void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
     }
     std::vector<solids::ClusteredComposite> levels;
     if (exact.most > 0)
-        levels = solids::composites(mesh, judge.skin(), judge.attributes(), exact, job);
+        levels = solids::composites(mesh, finest.skin, finest.attributes, exact, job);
     if (airy) {
         for (solids::ClusteredComposite& level : solids::clear_composites(
-                 mesh, judge.skin(), crowd.part_of, judge.attributes(), options, job))
+                 mesh, finest.skin, crowd.part_of, finest.attributes, options, job))
             levels.push_back(std::move(level));
     }
     for (const solids::ClusteredComposite& level : levels) {
         StandInCandidate candidate = candidate_of(level);
         candidate.by_few_rays = options.shape;
-        judge.compare_pictures(candidate, {}, job);
+        compare_pictures(candidate, {}, finest, pictures, job);
         candidates.push_back(std::move(candidate));
     }
 }
@@ -176,17 +181,17 @@ void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
 
 SolidCandidates::SolidCandidates(const Mesh& mesh,
                                  const std::function<prune::Crowd()>& crowd_in_mesh,
-                                 const ReplacedObject& whole, StandInEvaluator& judge,
-                                 const Job& job)
-    : mesh_(mesh), whole_(whole), judge_(judge) {
+                                 const ReplacedObject& whole, const MeasuredFinest& finest,
+                                 FinestPictures& pictures, const Job& job)
+    : mesh_(mesh), whole_(whole), finest_(finest), pictures_(pictures) {
     // Less than so many solids would cost is not worth a tenth of a second of pictures.
     constexpr double kFewSolids = 32;
-    if (whole.bytes > kFewSolids * kBytesPerPrimitive && !judge.refracts()) {
+    if (whole.bytes > kFewSolids * kBytesPerPrimitive && !finest.refracts()) {
         crowd_ = crowd_in_mesh();
-        by_pictures_ = !judge.solid() || (!crowd_.empty() && (whole.many || is_foliage(crowd_)));
+        by_pictures_ = !finest.solid() || (!crowd_.empty() && (whole.many || is_foliage(crowd_)));
     }
-    if (!by_pictures_ && !whole.ground && judge.solid())
-        add_primitives(solids_, whole.bound, false, judge, job);
+    if (!by_pictures_ && !whole.ground && finest.solid())
+        add_primitives(solids_, whole.bound, finest, nullptr, job);
 }
 
 double SolidCandidates::nearest_solid() const {
@@ -196,23 +201,23 @@ double SolidCandidates::nearest_solid() const {
     return out;
 }
 
-void SolidCandidates::add(std::vector<StandInCandidate>& candidates,
-                          const std::vector<Material>& materials, const BuildSettings& settings,
-                          uint64_t seed, const Job& job) {
+void SolidCandidates::add(std::vector<StandInCandidate>& candidates, double level_ratio,
+                          const Job& job) {
+    using Pictures = measure::AgreementReference;
     const double radius = whole_.bound.radius;
     const bool dear =
         bytes_within(candidates, kNear * radius, whole_.uses) > kCollapsed * whole_.bytes;
     const bool thinned = !crowd_.empty() && (whole_.many || is_foliage(crowd_) || dear);
     const bool by_pictures = by_pictures_ || thinned;
     if (by_pictures)
-        judge_.take_pictures(mesh_, !thinned, job);
+        pictures_.take(mesh_, thinned ? Pictures::kSide : Pictures::kCoarseSide, job);
     if (thinned)
-        add_pruned_levels(candidates, mesh_, materials, crowd_, settings.level_ratio,
-                          triangles_for(whole_.most, whole_.uses), seed, judge_, job);
+        add_pruned_levels(candidates, mesh_, crowd_, level_ratio,
+                          triangles_for(whole_.most, whole_.uses), finest_, pictures_, job);
     if (!by_pictures)
         candidates.insert(candidates.end(), solids_.begin(), solids_.end());
     else if (!whole_.ground)
-        add_primitives(candidates, whole_.bound, true, judge_, job);
+        add_primitives(candidates, whole_.bound, finest_, &pictures_, job);
     // Solids that the same memory would hold. Few collapsed triangles beside a smooth thing are as
     // good, and comparing pictures takes long.
     const double solids = by_pictures ? 16 : 64;
@@ -220,12 +225,12 @@ void SolidCandidates::add(std::vector<StandInCandidate>& candidates,
         solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole_.uses));
     constexpr size_t kFewest = 4;  // solids of the cheapest
     const size_t most = whole_.ground ? 0 : most_solids(candidates, whole_);
-    if (most >= kFewest && !judge_.refracts() && whole_.bytes > 2 * dearer &&
+    if (most >= kFewest && !finest_.refracts() && whole_.bytes > 2 * dearer &&
         bytes_within(candidates, kOff * radius, whole_.uses) > dearer) {
         if (!by_pictures)
-            judge_.take_pictures(mesh_, true, job);
+            pictures_.take(mesh_, Pictures::kCoarseSide, job);
         add_composites(candidates, mesh_, by_pictures, thinned ? crowd_ : prune::Crowd{}, most,
-                       seed, judge_, whole_, job);
+                       finest_, pictures_, whole_, job);
     }
 }
 

@@ -4,7 +4,8 @@
 
 #include "hierarchy/build_settings.h"
 #include "hierarchy/candidate.h"
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/evaluators/picture_error.h"
+#include "hierarchy/finest.h"
 #include "prune/part_pruning.h"
 
 #include <functional>
@@ -37,19 +38,20 @@ class SolidCandidates {
 public:
     /// Measures what costs little: a box and an ellipsoid, by distance, where that tells enough.
     SolidCandidates(const Mesh& mesh, const std::function<prune::Crowd()>& crowd_in_mesh,
-                    const ReplacedObject& whole, StandInEvaluator& judge, const Job& job);
+                    const ReplacedObject& whole, const MeasuredFinest& finest,
+                    FinestPictures& pictures, const Job& job);
 
     /// The error of the nearest of them, which cost less than any level; infinite without one.
     double nearest_solid() const;
     /// Pruned levels, primitives and composites, where they promise more than the levels, which
     /// `candidates` has.
-    void add(std::vector<StandInCandidate>& candidates, const std::vector<Material>& materials,
-             const BuildSettings& settings, uint64_t seed, const Job& job);
+    void add(std::vector<StandInCandidate>& candidates, double level_ratio, const Job& job);
 
 private:
     const Mesh& mesh_;
     const ReplacedObject& whole_;
-    StandInEvaluator& judge_;
+    const MeasuredFinest& finest_;
+    FinestPictures& pictures_;
     prune::Crowd crowd_;
     bool by_pictures_ = false;  // whatever the levels are like
     std::vector<StandInCandidate> solids_;

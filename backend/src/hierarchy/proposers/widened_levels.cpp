@@ -2,6 +2,7 @@
 #include "hierarchy/proposers/widened_levels.h"
 
 #include "group/loose_surfaces.h"
+#include "hierarchy/evaluators/brightness_match.h"
 #include "hierarchy/evaluators/lamp_glow.h"
 #include "measure/pictures/picture_agreement.h"
 #include "measure/visible/visible_attributes.h"
@@ -80,15 +81,14 @@ std::vector<uint8_t> perhaps_thin(const Mesh& mesh, const std::vector<uint32_t>&
     return out;
 }
 
-ThinParts thin_parts(const Mesh& mesh, const std::vector<Material>& materials,
-                     image::TexelCache& texels, uint64_t seed, double enough, const Job& job) {
+ThinParts thin_parts(const MeasuredFinest& finest, double enough, const Job& job) {
     ThinParts out;
+    const Mesh& mesh = finest.mesh;
     const std::vector<uint32_t> part_of = group::loose_parts(mesh);
-    const std::vector<uint8_t> perhaps = perhaps_thin(mesh, part_of, materials);
+    const std::vector<uint8_t> perhaps = perhaps_thin(mesh, part_of, finest.materials);
     if (static_cast<size_t>(std::count(perhaps.begin(), perhaps.end(), 1)) > kMostThin)
         return out;
     out.is_thin.assign(mesh.triangles.size(), 0);
-    const auto skin = std::make_shared<const ray::MeshSkin>(materials, texels);
     double area = 0;
     for (uint32_t number = 0; number < perhaps.size(); ++number) {
         if (perhaps[number] == 0)
@@ -97,11 +97,9 @@ ThinParts thin_parts(const Mesh& mesh, const std::vector<Material>& materials,
         for (size_t i = 0; i < keep.size(); ++i)
             keep[i] = part_of[i] == number ? 1 : 0;
         const Mesh part = subset(mesh, keep);
-        measure::VisibleOptions options;
-        options.rays = kRaysOfPart;
-        options.seed = seed;
         const Attributes attributes =
-            measure::measure_visible(part, ray::MeshScene(part, skin), skin, options, {}, job)
+            measure::measure_visible(part, ray::MeshScene(part, finest.skin), finest.skin,
+                                     finest.visible_options(kRaysOfPart), {}, job)
                 .attributes;
         const std::optional<solids::ThinPart> thin =
             attributes.empty() ? std::nullopt : solids::find_thin_part(part, attributes);
@@ -126,7 +124,7 @@ std::vector<uint8_t> not_of(std::vector<uint8_t> marks) {
 }
 
 /// Of a level all loose parts but those that stand for thin ones.
-Mesh rest_of(const Mesh& level, const ThinParts& thin, const StandInEvaluator& judge) {
+Mesh rest_of(const Mesh& level, const ThinParts& thin, const MeasuredFinest& finest) {
     const std::vector<uint32_t> part_of = group::loose_parts(level);
     std::vector<double> thin_area;  // by part, less what is not
     for (size_t i = 0; i < level.triangles.size(); ++i) {
@@ -137,7 +135,7 @@ Mesh rest_of(const Mesh& level, const ThinParts& thin, const StandInEvaluator& j
             (glm::dvec3(level.positions[t.x]) + glm::dvec3(level.positions[t.y]) +
              glm::dvec3(level.positions[t.z])) /
             3.0;
-        const ray::ClosestPoint found = judge.finest_scene().closest_point(middle);
+        const ray::ClosestPoint found = finest.scene().closest_point(middle);
         const double area = glm::length(area_vector(level, static_cast<uint32_t>(i)));
         if (found.triangle != ray::kNoTriangle)
             thin_area[part_of[i]] += thin.is_thin[found.triangle] != 0 ? area : -area;
@@ -171,40 +169,39 @@ StandInCandidate widened_level(const StandInCandidate& level, const Mesh& others
 
 }  // namespace
 
-void widen_thin_parts(std::vector<StandInCandidate>& kept, const Mesh& finest,
-                      const std::vector<Material>& materials, image::TexelCache& texels,
-                      uint64_t seed, StandInEvaluator& judge, const Job& job) {
-    const double radius = bound_of(finest.positions).radius;
-    const double visible = judge.attributes().visible_area;
-    const double widest = kWidest * radius;
-    const double floor = bound_of(finest.positions).box.low.z;
+void widen_thin_parts(std::vector<StandInCandidate>& kept, const MeasuredFinest& finest,
+                      FinestPictures& pictures, const Job& job) {
+    const Mesh& mesh = finest.mesh;
+    const std::vector<Material>& materials = finest.materials;
+    const double visible = finest.attributes.visible_area;
+    const double widest = kWidest * finest.size;
+    const double floor = bound_of(mesh.positions).box.low.z;
     const auto is_level =
         [&](const StandInCandidate& candidate) {  // no pruned mesh and no painted box
             return candidate.kind == Kind::Mesh && candidate.state != CandidateState::Pictured &&
                    candidate.materials.size() == materials.size() &&
-                   candidate.mesh->colors.empty() == finest.colors.empty();
+                   candidate.mesh->colors.empty() == mesh.colors.empty();
         };
-    if (!(visible < kSparsest * 4 * std::numbers::pi * radius * radius) ||
+    if (!(visible < kSparsest * 4 * std::numbers::pi * finest.size * finest.size) ||
         materials.size() + kMostThin > std::numeric_limits<uint16_t>::max() ||
         std::none_of(kept.begin(), kept.end(), is_level))
         return;
-    const ThinParts thin = thin_parts(finest, materials, texels, seed, kMostlyThin * visible, job);
+    const ThinParts thin = thin_parts(finest, kMostlyThin * visible, job);
     if (thin.parts.empty())
         return;
-    const Mesh beside = subset(finest, not_of(thin.is_thin));
-    std::optional<measure::AgreementReference> pictures;
+    const Mesh beside = subset(mesh, not_of(thin.is_thin));
+    std::optional<measure::AgreementReference> fine;
     const auto seen_from = [&](double width) {
-        if (!pictures)
-            pictures.emplace(finest, judge.finest_scene(), judge.skin(), seed,
-                             measure::AgreementReference::kSide, job);
+        if (!fine)
+            fine.emplace(mesh, finest.scene(), finest.skin, finest.options.seed,
+                         measure::AgreementReference::kSide, job);
         StandInCandidate exact;  // but for what is widened
         exact.materials = materials;
         exact = widened_level(exact, beside, thin, width, floor);
-        const auto skin = std::make_shared<const ray::MeshSkin>(exact.materials, texels);
-        return pictures->of(*exact.mesh, skin, job).error;
+        return fine->of(*exact.mesh, finest.skin_of(exact.materials), job).error;
     };
     std::vector<StandInCandidate> out;
-    size_t most = finest.triangles.size();
+    size_t most = mesh.triangles.size();
     bool wide = false;
     for (size_t i = 0; i < kept.size(); ++i) {
         const StandInCandidate& level = kept[i];
@@ -216,7 +213,7 @@ void widen_thin_parts(std::vector<StandInCandidate>& kept, const Mesh& finest,
         }
         const double next =
             i + 1 < kept.size() ? kept[i + 1].error : std::numeric_limits<double>::infinity();
-        const Mesh others = rest_of(*level.mesh, thin, judge);
+        const Mesh others = rest_of(*level.mesh, thin, finest);
         double error = level.error;
         bool any = false;
         double width = std::min(level.error, widest);
@@ -225,7 +222,7 @@ void widen_thin_parts(std::vector<StandInCandidate>& kept, const Mesh& finest,
             error = std::max({error, 0.5 * width, seen_from(width)});
             if (made.mesh->triangles.size() > most || !(error < next))
                 break;
-            judge.match_brightness(made, finest, next, job);
+            match_brightness(made, finest, pictures, next, job);
             made.error = error;
             made.max_error = std::max(level.max_error, error);
             out.push_back(std::move(made));

@@ -3,7 +3,8 @@
 #pragma once
 
 #include "hierarchy/candidate.h"
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/evaluators/picture_error.h"
+#include "hierarchy/finest.h"
 
 #include <cstdint>
 #include <vector>
@@ -18,9 +19,8 @@ namespace lodestone::hierarchy {
 /// the pixel and has alpha p by about p / 2. So no opaque level of more error is left.
 /// `kept`: finest first, as bright as the finest. An error is the level's own, half of the width,
 /// or what pictures say in which everything else is the finest's, whichever is most. Bytes never
-/// rise with the error. `materials`: the finest's.
-void widen_thin_parts(std::vector<StandInCandidate>& kept, const Mesh& finest,
-                      const std::vector<Material>& materials, image::TexelCache& texels,
-                      uint64_t seed, StandInEvaluator& judge, const Job& job);
+/// rise with the error.
+void widen_thin_parts(std::vector<StandInCandidate>& kept, const MeasuredFinest& finest,
+                      FinestPictures& pictures, const Job& job);
 
 }  // namespace lodestone::hierarchy

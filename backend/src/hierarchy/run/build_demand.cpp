@@ -2,7 +2,7 @@
 #include "hierarchy/run/build_demand.h"
 
 #include "choose/criterion.h"
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/counted_error.h"
 #include "hierarchy/run/effort_estimate.h"
 
 #include <algorithm>

@@ -50,10 +50,11 @@ std::vector<hierarchy::StandInCandidate> widened(const Mesh& finest,
                                                  const std::vector<Material>& own,
                                                  const Mesh& level, double error) {
     image::TexelCache texels;
-    hierarchy::StandInEvaluator judge(finest, own, texels, {}, false, 1, 0, {});
-    judge.measure_finest(finest, {});
+    const hierarchy::MeasuredFinest measured =
+        hierarchy::measure_finest(finest, own, texels, {}, {}, {});
+    hierarchy::FinestPictures pictures(measured);
     std::vector<hierarchy::StandInCandidate> kept{level_of(level, own, error)};
-    hierarchy::widen_thin_parts(kept, finest, own, texels, 1, judge, {});
+    hierarchy::widen_thin_parts(kept, measured, pictures, {});
     return kept;
 }
 
@@ -119,14 +120,15 @@ TEST_F(Widen, NoOpaquePostIsLeftBehindAClearOne) {
     image::TexelCache texels;
     const std::vector<Material> own = materials();
     const Mesh finest = lamp();
-    hierarchy::StandInEvaluator judge(finest, own, texels, {}, false, 1, 0, {});
-    judge.measure_finest(finest, {});
+    const hierarchy::MeasuredFinest measured =
+        hierarchy::measure_finest(finest, own, texels, {}, {}, {});
+    hierarchy::FinestPictures pictures(measured);
     const std::vector<size_t> targets{90, 60, 40};
     const std::vector<Mesh> levels = simplify::simplify_chain(finest, targets);
     std::vector<hierarchy::StandInCandidate> kept{level_of(levels[0], own, 0.05),
                                                   level_of(levels[1], own, 0.2),
                                                   level_of(levels[2], own, 1.5)};
-    hierarchy::widen_thin_parts(kept, finest, own, texels, 1, judge, {});
+    hierarchy::widen_thin_parts(kept, measured, pictures, {});
     ASSERT_GE(kept.size(), 3u);
     EXPECT_EQ(kept[0].mesh->positions, levels[0].positions);
     for (size_t i = 1; i < kept.size(); ++i) {

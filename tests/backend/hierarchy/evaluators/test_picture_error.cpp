@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what is said of a group's children that are drawn together: each may be right alone.
-#include "hierarchy/evaluators/stand_in_evaluator.h"
+#include "hierarchy/evaluators/picture_error.h"
 #include "scenes/small_models.h"
 #include "scenes/with_rays.h"
 
@@ -8,7 +8,7 @@ using namespace lodestone;
 
 namespace {
 
-class StandInEvaluator : public WithRays {};
+class StandInPictureError : public WithRays {};
 
 constexpr double kThick = 0.04;
 constexpr double kCover = 0.003;
@@ -23,7 +23,7 @@ Mesh book(double low, uint16_t paper, uint16_t cover) {
 
 }  // namespace
 
-TEST_F(StandInEvaluator, BooksThatAreDarkTogetherDoNotStandForTheirPile) {
+TEST_F(StandInPictureError, BooksThatAreDarkTogetherDoNotStandForTheirPile) {
     // Alone a book shows its dark covers above all, in a pile its paper.
     const glm::dvec3 paper(0.8);
     const glm::dvec3 cover(0.05);
@@ -40,18 +40,22 @@ TEST_F(StandInEvaluator, BooksThatAreDarkTogetherDoNotStandForTheirPile) {
     const std::vector<Material> materials{models::colored("paper", paper),
                                           models::colored("cover", cover)};
     image::TexelCache texels;
-    hierarchy::StandInEvaluator judge(pile, materials, texels, {}, false, 1, 0.001, {});
+    hierarchy::FinestOptions options;
+    options.child_error = 0.001;
+    const hierarchy::MeasuredFinest finest =
+        hierarchy::measure_finest(pile, materials, texels, {}, options, {});
+    hierarchy::FinestPictures pictures(finest);
     constexpr double kError = 0.2;  // metres: pixels of a third of the pile
     const auto alike = [&](const Mesh& drawn, double brightness, const glm::dvec3& other) {
-        return judge.looks_alike(drawn,
-                                 std::vector<Material>{models::colored("a", brightness * paper),
-                                                       models::colored("b", other)},
-                                 pile, kError, {});
+        return looks_alike(drawn,
+                           std::vector<Material>{models::colored("a", brightness * paper),
+                                                 models::colored("b", other)},
+                           kError, finest, pictures, {});
     };
     EXPECT_TRUE(alike(pile, 1, cover));
     EXPECT_TRUE(alike(pile, 0.95, cover));
     EXPECT_FALSE(alike(pile, 0.8, 0.8 * cover));
     const glm::dvec3 mean = (covers * cover + sides * paper) / (covers + sides);
     EXPECT_FALSE(alike(boxes, mean.x / paper.x, mean));
-    EXPECT_FALSE(judge.looks_alike(pile, materials, pile, 0.0005, {}));  // finer than its own
+    EXPECT_FALSE(looks_alike(pile, materials, 0.0005, finest, pictures, {}));  // finer than its own
 }

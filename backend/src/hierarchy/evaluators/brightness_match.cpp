@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/evaluators/brightness_match.h"
+
+#include "hierarchy/evaluators/lamp_glow.h"
+#include "hierarchy/evaluators/traced_candidate.h"
+#include "solids/stand_in_material.h"
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::hierarchy {
+namespace {
+
+// Over the radius: what is used up to here is that where the whole is 24 pixels large or more, and
+// looks alike. Taste.
+constexpr double kUsedNear = 1.0 / 12;
+
+/// Makes what glows of a candidate glow as much as the finest does.
+void match_glow(StandInCandidate& candidate,
+                const measure::AgreementReference::TracedPictures& traced,
+                const MeasuredFinest& finest, FinestPictures& pictures, const Job& job) {
+    constexpr double kMost = 4;  // taste: what is off by more is not made right by its light
+    const glm::dvec3& glow = pictures.glow(job);
+    const glm::dvec3 now =
+        light_over_emitted(pictures.taken(), traced, candidate.materials, finest);
+    glm::dvec3 more(1.0);
+    for (int i = 0; i < 3; ++i) {
+        const double ratio = now[i] / glow[i];
+        if (now[i] != 1 && glow[i] != 1 && std::isfinite(ratio))  // 1: none of that color
+            more[i] = std::clamp(ratio, 1 / kMost, kMost);
+    }
+    for (Material& material : candidate.materials)
+        emit_more(material, more);
+}
+
+}  // namespace
+
+bool is_matched(const MeasuredFinest& finest, double used_to) {
+    return !finest.options.environment && (used_to >= kUsedNear * finest.size || finest.glows);
+}
+
+void match_brightness(StandInCandidate& candidate, const MeasuredFinest& finest,
+                      FinestPictures& pictures, double used_to, const Job& job) {
+    constexpr double kAlikeBright = 0.01;  // taste: nobody sees it
+    constexpr double kMost = 2;            // taste, in a round
+    // What glows, and what is clear, has no part in the correction: further rounds are nearer.
+    constexpr int kRounds = 3;
+    if (candidate.state != CandidateState::Measured || !is_matched(finest, used_to))
+        return;
+    using Pictures = measure::AgreementReference;
+    const Pictures& reference =
+        pictures.take(finest.mesh, finest.glows ? Pictures::kSide : Pictures::kBrightSide, job);
+    ray::SkinPtr current = finest.skin_of(candidate.materials);
+    Mesh solid;
+    const auto traced = reference.trace(traced_mesh(candidate, solid), current, job);
+    if (finest.glows) {
+        match_glow(candidate, traced, finest, pictures, job);
+        current = finest.skin_of(candidate.materials);
+    }
+    for (int round = 0; round < kRounds; ++round) {
+        const glm::dvec3 light = reference.brightness_of(traced, current).light;
+        const glm::dvec3 off = glm::abs(light - 1.0);
+        if (!(std::max({off.x, off.y, off.z}) > kAlikeBright))
+            break;
+        for (Material& material : candidate.materials) {
+            // The color of glass is that of what is seen through it.
+            if (!(material.transmission * (1 - material.metallic) > 0.5))
+                solids::brighten(material,
+                                 glm::clamp(light, glm::dvec3(1 / kMost), glm::dvec3(kMost)));
+        }
+        current = finest.skin_of(candidate.materials);
+    }
+    come_to(candidate, CandidateState::Matched);
+    if (candidate.kind != Kind::Mesh || finest.layered)
+        return;
+    // Near something else that is left a point may have been all that closed a gap. Where the error
+    // is as large as the pictures' pixels all that they show counts, half.
+    const double child_error = finest.options.child_error;
+    const double own = candidate.error - child_error;
+    const double seen = own < kUsedNear * finest.size
+                            ? reference.gap_error(traced, current, own)
+                            : kPictures * reference.of(traced, current).error;
+    candidate.error = std::max(candidate.error, seen + child_error);
+    candidate.max_error = std::max(candidate.max_error, seen + child_error);
+}
+
+}  // namespace lodestone::hierarchy

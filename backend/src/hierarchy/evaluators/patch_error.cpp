@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/evaluators/patch_error.h"
+
+#include "hierarchy/evaluators/brightness_match.h"
+#include "hierarchy/evaluators/traced_candidate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::hierarchy {
+namespace {
+
+// A level that shows this much more or less surface than the original is no simplification of it
+// (foliage gone bald), however near its remaining points are. Taste.
+constexpr double kMostAreaChange = 0.25;
+// The share of the size of patches that look different which is their error. Taste.
+constexpr double kPatches = 0.5;
+
+bool shows_as_much_in(const Mesh& level, const ray::MeshScene& scene, const MeasuredFinest& finest,
+                      const Job& job) {
+    // Few rays tell what is nearly alike or far from it: so far off they are not sure. Taste.
+    constexpr double kUnsure = 0.15;
+    const measure::VisibleSampler sampler(level, scene, finest.options.seed);
+    double change = 0;
+    for (const uint64_t share : {8, 2}) {
+        const double visible = measure::visible_area(sampler, finest.rays / share, job);
+        change = std::abs(visible / finest.attributes.visible_area - 1);
+        if (std::abs(change - kMostAreaChange) > kUnsure)
+            break;
+    }
+    return change <= kMostAreaChange;
+}
+
+}  // namespace
+
+bool shows_as_much(const Mesh& level, const MeasuredFinest& finest, const Job& job) {
+    return shows_as_much_in(level, ray::MeshScene(level, finest.skin), finest, job);
+}
+
+bool prove(StandInCandidate& candidate, const MeasuredFinest& finest, double used_to,
+           const Job& job) {
+    const bool is_mesh = candidate.kind == Kind::Mesh;
+    Mesh solid;
+    const Mesh& mesh = traced_mesh(candidate, solid);
+    const ray::SkinPtr skin = skin_of(candidate, finest);
+    const ray::MeshScene scene(mesh, skin);
+    come_to(candidate, CandidateState::Measured);
+    if (is_mesh && !shows_as_much_in(mesh, scene, finest, job))
+        return false;
+    if (!finest.patches)
+        return true;
+    const double own = candidate.error - finest.options.child_error;
+    const double unlike = finest.patches->largest_unlike_patch(
+        mesh, scene, *skin, is_matched(finest, used_to), own / kPatches);
+    const double seen = kPatches * unlike + finest.options.child_error;
+    candidate.error = std::max(candidate.error, seen);
+    candidate.max_error = std::max(candidate.max_error, seen);
+    return true;
+}
+
+}  // namespace lodestone::hierarchy

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Patch errors: whether a candidate shows as much surface as the finest, and about as much light at
+// each place.
+#pragma once
+
+#include "hierarchy/candidate.h"
+#include "hierarchy/finest.h"
+
+namespace lodestone::hierarchy {
+
+/// False for a level of the finest's materials that shows another amount of surface.
+bool shows_as_much(const Mesh& level, const MeasuredFinest& finest, const Job& job);
+
+/// Looks at a candidate that is Unproven. False for a mesh that shows another amount of surface.
+/// Otherwise the error becomes at least half as large as the patches that do not look like the
+/// finest's. `used_to`: the error from which on another is used.
+bool prove(StandInCandidate& candidate, const MeasuredFinest& finest, double used_to,
+           const Job& job);
+
+}  // namespace lodestone::hierarchy

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Picture errors: from which pixel size on pictures of a candidate and of the finest agree.
+#pragma once
+
+#include "hierarchy/candidate.h"
+#include "hierarchy/finest.h"
+#include "measure/pictures/picture_agreement.h"
+
+#include <optional>
+
+namespace lodestone::hierarchy {
+
+/// Of the pixel size from which on whole pictures agree, the share that what is near in space may
+/// have as an error. Taste.
+inline constexpr double kPictures = 0.5;
+
+/// The pictures of the finest: taken once, by the first who needs them and as fine as he does. Who
+/// comes later makes do with these.
+class FinestPictures {
+public:
+    /// The finest must last.
+    explicit FinestPictures(const MeasuredFinest& finest) : finest_(&finest) {}
+
+    /// `seen`: the finest, or what of it can be seen. `side`: one of AgreementReference's.
+    const measure::AgreementReference& take(const Mesh& seen, int side, const Job& job);
+    /// Those that are there. Throws Error: Internal, where take() was never called.
+    const measure::AgreementReference& taken() const;
+
+    /// All light of the finest's pictures over what it emits, by color.
+    const glm::dvec3& glow(const Job& job);
+
+private:
+    const MeasuredFinest* finest_;
+    std::optional<measure::AgreementReference> pictures_;
+    std::optional<glm::dvec3> glow_;
+};
+
+/// All light of the finest's pictures over what these materials of something traced emit.
+glm::dvec3 light_over_emitted(const measure::AgreementReference& pictures,
+                              const measure::AgreementReference::TracedPictures& traced,
+                              std::span<const Material> materials, const MeasuredFinest& finest);
+
+/// Fills the errors of a candidate with its own materials by pictures that were taken, and makes it
+/// as bright as the finest by its colors, first by those of the slots `tinted`: Pictured.
+void compare_pictures(StandInCandidate& candidate, std::span<const uint16_t> tinted,
+                      const MeasuredFinest& finest, const FinestPictures& pictures, const Job& job);
+
+/// Whether what is drawn of a group's children is about as bright as the finest, and looks like it
+/// in pictures of pixels of that error.
+bool looks_alike(const Mesh& drawn, std::span<const Material> materials, double error,
+                 const MeasuredFinest& finest, FinestPictures& pictures, const Job& job);
+
+}  // namespace lodestone::hierarchy
