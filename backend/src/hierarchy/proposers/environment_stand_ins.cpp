@@ -39,10 +39,13 @@ std::vector<SolidsInEnvironment> singles(const Attributes& attributes, const Bou
 
 }  // namespace
 
-void add_environment_stand_ins(std::vector<StandInCandidate>& candidates,
-                               const std::vector<uint8_t>& environment,
-                               const MeasuredFinest& finest, const Job& job) {
+void propose_environment_stand_ins(ProposalRound& round) {
+    const std::vector<uint8_t>& environment = round.limits.environment;
+    const MeasuredFinest& finest = round.finest;
     const std::vector<Material>& materials = finest.materials;
+    const Job& job = round.job;
+    if (environment.empty())
+        return;
     std::vector<uint8_t> others;
     others.reserve(environment.size());
     for (const uint8_t one : environment)
@@ -83,7 +86,7 @@ void add_environment_stand_ins(std::vector<StandInCandidate>& candidates,
         for (const Attributes& own : beside.attributes)
             candidate.materials.push_back(solids::mean_material(own));
         measure_mesh(candidate, finest, job);
-        candidates.push_back(std::move(candidate));
+        round.candidates.push_back(std::move(candidate));
     }
 }
 

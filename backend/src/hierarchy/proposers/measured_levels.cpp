@@ -8,29 +8,49 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace lodestone::hierarchy {
+namespace {
 
-void add_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
-                const std::vector<size_t>& targets, const LevelLimits& wanted,
-                const MeasuredFinest& finest, const Job& job) {
-    const std::vector<Material>& materials = finest.materials;
+/// The error of the nearest solid that is of use, and costs less than any level; infinite without
+/// one.
+double nearest_of_use(const ProposalRound& round) {
+    const ReplacedObject& whole = round.limits.whole;
+    double out = std::numeric_limits<double>::infinity();
+    for (const StandInCandidate& solid : round.near_solids)
+        out = std::min(out, solid.error);
+    const bool used =
+        std::isfinite(out) &&
+        (!whole.pays ||
+         whole.pays(bytes_per_occurrence(Kind::Box, kBytesPerPrimitive, whole.uses), out));
+    return used ? out : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+void propose_levels(ProposalRound& round) {
     // A level is hardly ever more than so many times nearer than the next coarser one (of 836 pairs
     // in groups: a tenth; of 275 that would have to be, one).
     constexpr double kMostNearer = 4;
-    if (targets.empty())
+    const ProposalLimits& limits = round.limits;
+    const MeasuredFinest& finest = round.finest;
+    const Job& job = round.job;
+    if (limits.targets.empty())
         return;
     Mesh plain;
-    const Mesh& source = without_unseen_colors(mesh, materials, plain);
-    std::vector<Mesh> levels = simplify_with_lamps(source, materials, targets, job);
+    const Mesh& source = without_unseen_colors(limits.mesh, finest.materials, plain);
+    std::vector<Mesh> levels = simplify_with_lamps(source, finest.materials, limits.targets, job);
     std::vector<StandInCandidate> measured;
-    std::vector<double> nexts{wanted.solid};  // where a level may end, and one of them takes over
+    const double solid = nearest_of_use(round);
+    std::vector<double> nexts{solid};  // where a level may end, and one of them takes over
     double coarser = 0;
     for (size_t i = levels.size(); i-- > 0;) {
         Mesh& level = levels[i];
         // What it saves is asked for half way to the next, on a scale of powers.
-        const double useless = wanted.useless(level.triangles.size());
-        double most = wanted.told;
+        const double useless = limits.useless ? limits.useless(level.triangles.size())
+                                              : std::numeric_limits<double>::infinity();
+        double most = limits.told;
         for (const double next : nexts)
             most = std::max(
                 most, std::isfinite(next) ? std::min(next, useless * useless / next) : useless);
@@ -41,19 +61,19 @@ void add_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
         const measure::DeviationReference::RepaintResult known = repaint(level, finest, job, most);
         StandInCandidate candidate;
         candidate.mesh = std::make_shared<Mesh>(std::move(level));
-        candidate.materials = materials;
+        candidate.materials = finest.materials;
         candidate.state = CandidateState::Unproven;
         measure_mesh(candidate, finest, job, most, known);
         coarser = std::min(candidate.error, std::max(most, useless));
         if (!std::isfinite(coarser))
             coarser = most;  // it is farther than that
-        if (candidate.error < wanted.solid)
+        if (candidate.error < solid)
             nexts.push_back(candidate.error);
         if (std::isfinite(candidate.error))
             measured.push_back(std::move(candidate));
     }
-    candidates.insert(candidates.end(), std::make_move_iterator(measured.rbegin()),
-                      std::make_move_iterator(measured.rend()));
+    round.candidates.insert(round.candidates.end(), std::make_move_iterator(measured.rbegin()),
+                            std::make_move_iterator(measured.rend()));
 }
 
 }  // namespace lodestone::hierarchy

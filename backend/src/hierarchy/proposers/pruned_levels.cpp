@@ -210,8 +210,7 @@ private:
     std::vector<double> visible_;  // by kind, of the whole crowd
 };
 
-}  // namespace
-
+/// None of more than about so many triangles.
 void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
                        const Crowd& crowd, double level_ratio, size_t most,
                        const MeasuredFinest& finest, const FinestPictures& pictures,
@@ -241,6 +240,24 @@ void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& me
                 break;
         }
     }
+}
+
+}  // namespace
+
+void propose_pruned_levels(ProposalRound& round) {
+    const ReplacedObject& whole = round.limits.whole;
+    if (round.crowd.empty())
+        return;
+    const bool dear = bytes_within(round.candidates, kNear * whole.bound.radius, whole.uses) >
+                      kCollapsed * whole.bytes;
+    round.pruned = whole.many || is_foliage(round.crowd) || dear;
+    if (!round.pruned)
+        return;
+    round.by_pictures = true;
+    round.pictures.take(round.limits.mesh, measure::AgreementReference::kSide, round.job);
+    add_pruned_levels(round.candidates, round.limits.mesh, round.crowd, round.limits.level_ratio,
+                      triangles_for(whole.most, whole.uses), round.finest, round.pictures,
+                      round.job);
 }
 
 }  // namespace lodestone::hierarchy

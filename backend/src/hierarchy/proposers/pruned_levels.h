@@ -2,18 +2,14 @@
 // Pruned levels: foliage, fences and crowds with fewer and larger parts.
 #pragma once
 
-#include "hierarchy/evaluators/picture_error.h"
-#include "hierarchy/finest.h"
-#include "prune/part_pruning.h"
+#include "hierarchy/proposers/proposal_round.h"
 
 namespace lodestone::hierarchy {
 
-/// Levels of a mesh with a crowd in it: of the crowd some parts, enlarged until each kind shows as
-/// much as in the mesh; of the rest as many triangles in proportion; none of more than about `most`
-/// triangles. Judged by the pictures that were taken of the same mesh.
-void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
-                       const prune::Crowd& crowd, double level_ratio, size_t most,
-                       const MeasuredFinest& finest, const FinestPictures& pictures,
-                       const Job& job);
+/// Proposes levels of a mesh with a crowd in it, where that is foliage, its parts are objects, or
+/// collapsed levels cost too much: of the crowd some parts, enlarged until each kind shows as much
+/// as in the mesh; of everything else as many triangles in proportion. They are compared by
+/// pictures.
+void propose_pruned_levels(ProposalRound& round);
 
 }  // namespace lodestone::hierarchy

@@ -169,8 +169,12 @@ StandInCandidate widened_level(const StandInCandidate& level, const Mesh& others
 
 }  // namespace
 
-void widen_thin_parts(std::vector<StandInCandidate>& kept, const MeasuredFinest& finest,
-                      FinestPictures& pictures, const Job& job) {
+void propose_widened_levels(ProposalRound& round) {
+    const MeasuredFinest& finest = round.finest;
+    const Job& job = round.job;
+    std::vector<StandInCandidate>& kept = round.candidates;
+    if (finest.options.group || finest.options.environment)
+        return;
     const Mesh& mesh = finest.mesh;
     const std::vector<Material>& materials = finest.materials;
     const double visible = finest.attributes.visible_area;
@@ -222,7 +226,7 @@ void widen_thin_parts(std::vector<StandInCandidate>& kept, const MeasuredFinest&
             error = std::max({error, 0.5 * width, seen_from(width)});
             if (made.mesh->triangles.size() > most || !(error < next))
                 break;
-            match_brightness(made, finest, pictures, next, job);
+            match_brightness(made, finest, round.pictures, next, job);
             made.error = error;
             made.max_error = std::max(level.max_error, error);
             out.push_back(std::move(made));

@@ -45,17 +45,27 @@ hierarchy::StandInCandidate level_of(const Mesh& mesh, const std::vector<Materia
     return out;
 }
 
-/// What becomes of one level of `finest` with that error.
+/// What becomes of these candidates for `finest`.
 std::vector<hierarchy::StandInCandidate> widened(const Mesh& finest,
                                                  const std::vector<Material>& own,
-                                                 const Mesh& level, double error) {
+                                                 std::vector<hierarchy::StandInCandidate> kept) {
     image::TexelCache texels;
     const hierarchy::MeasuredFinest measured =
         hierarchy::measure_finest(finest, own, texels, {}, {}, {});
     hierarchy::FinestPictures pictures(measured);
-    std::vector<hierarchy::StandInCandidate> kept{level_of(level, own, error)};
-    hierarchy::widen_thin_parts(kept, measured, pictures, {});
-    return kept;
+    const hierarchy::ProposalLimits limits{finest, {bound_of(finest.positions)}};
+    const Job job;
+    hierarchy::ProposalRound round(measured, pictures, limits, job);
+    round.candidates = std::move(kept);
+    hierarchy::propose_widened_levels(round);
+    return round.candidates;
+}
+
+/// What becomes of one level of `finest` with that error.
+std::vector<hierarchy::StandInCandidate> widened(const Mesh& finest,
+                                                 const std::vector<Material>& own,
+                                                 const Mesh& level, double error) {
+    return widened(finest, own, {level_of(level, own, error)});
 }
 
 }  // namespace
@@ -117,18 +127,14 @@ TEST_F(Widen, AnOpaquePostOfALevelIsDrawnAsWideAsTheErrorAndAsClear) {
 }
 
 TEST_F(Widen, NoOpaquePostIsLeftBehindAClearOne) {
-    image::TexelCache texels;
     const std::vector<Material> own = materials();
     const Mesh finest = lamp();
-    const hierarchy::MeasuredFinest measured =
-        hierarchy::measure_finest(finest, own, texels, {}, {}, {});
-    hierarchy::FinestPictures pictures(measured);
     const std::vector<size_t> targets{90, 60, 40};
     const std::vector<Mesh> levels = simplify::simplify_chain(finest, targets);
-    std::vector<hierarchy::StandInCandidate> kept{level_of(levels[0], own, 0.05),
-                                                  level_of(levels[1], own, 0.2),
-                                                  level_of(levels[2], own, 1.5)};
-    hierarchy::widen_thin_parts(kept, measured, pictures, {});
+    const std::vector<hierarchy::StandInCandidate> kept =
+        widened(finest, own,
+                {level_of(levels[0], own, 0.05), level_of(levels[1], own, 0.2),
+                 level_of(levels[2], own, 1.5)});
     ASSERT_GE(kept.size(), 3u);
     EXPECT_EQ(kept[0].mesh->positions, levels[0].positions);
     for (size_t i = 1; i < kept.size(); ++i) {

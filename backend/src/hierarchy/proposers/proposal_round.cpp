@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/proposers/proposal_round.h"
+
+#include <algorithm>
+
+namespace lodestone::hierarchy {
+
+size_t triangles_for(double bytes, uint64_t uses) {
+    const double all = bytes * static_cast<double>(std::max<uint64_t>(1, uses));
+    return static_cast<size_t>(std::clamp(all / kBytesPerTriangle, 0.0, 1e9));
+}
+
+bool is_foliage(const prune::Crowd& crowd) {
+    constexpr size_t kFewestLeaves = 256;  // taste
+    constexpr size_t kTriangles = 8;       // of a leaf, in the mean; taste
+    return crowd.parts.size() >= kFewestLeaves &&
+           crowd.triangles <= kTriangles * crowd.parts.size();
+}
+
+ProposalRound::ProposalRound(const MeasuredFinest& original, FinestPictures& taken,
+                             const ProposalLimits& limits_of_it, const Job& asked)
+    : finest(original), pictures(taken), limits(limits_of_it), job(asked) {
+    // Less than so many solids would cost is not worth a tenth of a second of pictures. Taste.
+    constexpr double kFewSolids = 32;
+    const ReplacedObject& whole = limits.whole;
+    if (finest.options.environment || !(whole.bytes > kFewSolids * kBytesPerPrimitive) ||
+        finest.refracts())
+        return;
+    if (limits.find_crowd)
+        crowd = limits.find_crowd();
+    by_pictures = !finest.solid() || (!crowd.empty() && (whole.many || is_foliage(crowd)));
+}
+
+}  // namespace lodestone::hierarchy

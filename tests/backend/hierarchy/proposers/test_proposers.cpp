@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards each row of the proposers alone: what it adds to what those before it proposed.
+#include "base/error.h"
+#include "hierarchy/proposers/collapse_levels.h"
+#include "hierarchy/proposers/proposers.h"
+#include "scenes/leaf_cards.h"
+#include "scenes/small_models.h"
+#include "scenes/with_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+using namespace lodestone;
+using hierarchy::CandidateState;
+using hierarchy::StandInCandidate;
+
+namespace {
+
+/// One original, and a walk along the rows.
+class StandInProposers : public WithRays {
+protected:
+    /// What each row of the first stage adds, by name.
+    std::map<std::string, std::vector<StandInCandidate>> walk(
+        Mesh mesh, std::vector<Material> materials, hierarchy::FinestOptions options = {},
+        std::vector<uint8_t> environment = {}) {
+        mesh_ = std::move(mesh);
+        materials_ = std::move(materials);
+        finest_.emplace(
+            hierarchy::measure_finest(mesh_, materials_, texels_, settings_, options, {}));
+        limits_.emplace(hierarchy::ProposalLimits{mesh_, {bound_of(mesh_.positions)}});
+        limits_->whole.bytes = static_cast<double>(mesh_.triangles.size()) * kBytesPerTriangle;
+        limits_->whole.most = limits_->whole.bytes;
+        limits_->targets = hierarchy::targets_of(mesh_, settings_);
+        limits_->told = hierarchy::kOff * limits_->whole.bound.radius;
+        limits_->environment = std::move(environment);
+        limits_->find_crowd = [this] { return prune::find_crowd(mesh_); };
+        pictures_.emplace(*finest_);
+        round_.emplace(*finest_, *pictures_, *limits_, job_);
+        std::map<std::string, std::vector<StandInCandidate>> out;
+        for (const hierarchy::StandInProposer& proposer : hierarchy::stand_in_proposers()) {
+            if (proposer.stage != hierarchy::ProposalStage::All)
+                continue;
+            const size_t before = round_->candidates.size();
+            proposer.propose(*round_);
+            out[std::string(proposer.name)] = {
+                round_->candidates.begin() + static_cast<std::ptrdiff_t>(before),
+                round_->candidates.end()};
+        }
+        return out;
+    }
+
+    Mesh mesh_;
+    std::vector<Material> materials_;
+    image::TexelCache texels_;
+    hierarchy::BuildSettings settings_;
+    Job job_;
+    std::optional<hierarchy::MeasuredFinest> finest_;
+    std::optional<hierarchy::ProposalLimits> limits_;
+    std::optional<hierarchy::FinestPictures> pictures_;
+    std::optional<hierarchy::ProposalRound> round_;
+};
+
+void expect_meshes_that_get_simpler(const std::vector<StandInCandidate>& levels,
+                                    CandidateState state) {
+    for (size_t i = 0; i < levels.size(); ++i) {
+        EXPECT_EQ(levels[i].kind, Kind::Mesh);
+        EXPECT_EQ(levels[i].state, state);
+        EXPECT_TRUE(std::isfinite(levels[i].error));
+        EXPECT_LE(levels[i].error, levels[i].max_error);
+        if (i > 0) {
+            EXPECT_LT(levels[i].mesh->triangles.size(), levels[i - 1].mesh->triangles.size());
+        }
+    }
+}
+
+}  // namespace
+
+TEST(StandInProposerRows, HaveNamesOfTheirOwnAndRefineAfterTheyPropose) {
+    std::set<std::string_view> names;
+    bool kept = false;
+    for (const hierarchy::StandInProposer& proposer : hierarchy::stand_in_proposers()) {
+        EXPECT_FALSE(proposer.name.empty());
+        EXPECT_TRUE(names.insert(proposer.name).second) << proposer.name;
+        ASSERT_NE(proposer.propose, nullptr);
+        kept = kept || proposer.stage == hierarchy::ProposalStage::Kept;
+        EXPECT_EQ(kept, proposer.stage == hierarchy::ProposalStage::Kept) << proposer.name;
+    }
+}
+
+TEST_F(StandInProposers, ABallIsCollapsedAndReplacedByDistance) {
+    auto made = walk(shapes::sphere(1), {models::colored("red", {0.5, 0.1, 0.1})});
+    EXPECT_TRUE(made["near solids"].empty()) << "no candidates before it is known they are";
+    ASSERT_GE(round_->near_solids.size(), 2u);
+    ASSERT_FALSE(made["collapse"].empty());
+    expect_meshes_that_get_simpler(made["collapse"], CandidateState::Unproven);
+    EXPECT_TRUE(made["prune"].empty());
+    ASSERT_EQ(made["solids"].size(), round_->near_solids.size());
+    const auto nearest = std::min_element(
+        made["solids"].begin(), made["solids"].end(),
+        [](const StandInCandidate& a, const StandInCandidate& b) { return a.error < b.error; });
+    EXPECT_EQ(nearest->kind, Kind::Ellipsoid);
+    EXPECT_LT(nearest->error, 0.05);
+    for (const StandInCandidate& solid : made["solids"]) {
+        EXPECT_EQ(solid.state, CandidateState::Unproven);
+        EXPECT_TRUE(solid.by_few_rays);
+    }
+    EXPECT_TRUE(made["composites"].empty()) << "nothing is nearer than an ellipsoid";
+    EXPECT_TRUE(made["environment"].empty());
+    EXPECT_FALSE(round_->by_pictures);
+    EXPECT_THROW(static_cast<void>(pictures_->taken()), Error) << "pictures take long";
+}
+
+TEST_F(StandInProposers, ATreeIsPrunedAndComparedByPictures) {
+    const PicturePtr leaf = foliage::picture(16, [](double x, double y) {
+        return glm::dvec4(0.1, 0.5, 0.1, std::hypot(x - 0.5, y - 0.5) < 0.4 ? 1 : 0);
+    });
+    auto made =
+        walk(foliage::tree(400), {models::colored("bark", {0.2, 0.1, 0.05}), foliage::leaf(leaf)});
+    EXPECT_TRUE(round_->near_solids.empty());
+    EXPECT_TRUE(round_->by_pictures);
+    EXPECT_TRUE(round_->pruned);
+    ASSERT_FALSE(made["prune"].empty());
+    ASSERT_FALSE(made["solids"].empty());
+    for (const char* row : {"prune", "solids", "composites"}) {
+        for (const StandInCandidate& candidate : made[row])
+            EXPECT_EQ(candidate.state, CandidateState::Pictured) << row;
+    }
+    for (const StandInCandidate& level : made["prune"])
+        EXPECT_LT(level.mesh->triangles.size(), mesh_.triangles.size());
+    EXPECT_NO_THROW(static_cast<void>(pictures_->taken()));
+}
+
+TEST_F(StandInProposers, EnvironmentHasLevelsAlone) {
+    hierarchy::FinestOptions options;
+    options.environment = true;
+    auto made = walk(shapes::terrain(40), {models::colored("grass", {0.1, 0.4, 0.1})}, options);
+    EXPECT_FALSE(made["collapse"].empty());
+    for (const char* row : {"near solids", "prune", "solids", "composites", "environment"})
+        EXPECT_TRUE(made[row].empty()) << row;
+}
+
+TEST_F(StandInProposers, WhatStandsOnEnvironmentIsSolidsBesideIt) {
+    Mesh mesh = shapes::terrain(20);
+    std::vector<uint8_t> environment(mesh.triangles.size(), 1);
+    Mesh ball = shapes::sphere(1);
+    for (glm::vec3& position : ball.positions)
+        position.z += 2;
+    append(mesh, ball, {});
+    environment.resize(mesh.triangles.size(), 0);
+    hierarchy::FinestOptions options;
+    options.environment = options.group = true;
+    auto made =
+        walk(std::move(mesh), {models::colored("all", {0.3, 0.3, 0.3})}, options, environment);
+    ASSERT_GE(made["environment"].size(), 2u);
+    for (const StandInCandidate& candidate : made["environment"]) {
+        EXPECT_EQ(candidate.kind, Kind::Mesh);
+        EXPECT_EQ(candidate.state, CandidateState::Unproven);
+        EXPECT_GT(candidate.materials.size(), finest_->materials.size());
+        EXPECT_LT(candidate.mesh->triangles.size(), mesh_.triangles.size());
+    }
+    auto bare = walk(shapes::terrain(20), {models::colored("all", {0.3, 0.3, 0.3})}, options,
+                     std::vector<uint8_t>(shapes::terrain(20).triangles.size(), 1));
+    EXPECT_TRUE(bare["environment"].empty()) << "nothing stands on it";
+}
