@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// StandInCandidate: a stand-in on its way into the model, and which of several are worth keeping.
+// StandInCandidate: a stand-in on its way into the model, and what it costs.
 #pragma once
 
 #include "model/model.h"
@@ -54,10 +54,5 @@ double bytes_of(const StandInCandidate& candidate, uint64_t uses);
 
 /// The cheapest candidate within an error; infinite when there is none.
 double bytes_within(const std::vector<StandInCandidate>& candidates, double error, uint64_t uses);
-
-/// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
-/// bytes and error), and those that cost no less than `finest_bytes`; with so many occurrences.
-void keep_pareto_front(std::vector<StandInCandidate>& candidates, uint64_t finest_bytes,
-                       uint64_t uses = 1);
 
 }  // namespace lodestone::hierarchy

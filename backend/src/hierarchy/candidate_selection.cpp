@@ -2,8 +2,8 @@
 #include "hierarchy/candidate_selection.h"
 
 #include "hierarchy/evaluators/brightness_match.h"
-#include "hierarchy/evaluators/lamp_glow.h"
 #include "hierarchy/evaluators/patch_error.h"
+#include "hierarchy/lamp_materials.h"
 #include "solids/painted_box.h"
 
 #include <algorithm>
@@ -37,6 +37,29 @@ void paint_sides(StandInCandidate& candidate, const MeasuredFinest& finest) {
 }
 
 }  // namespace
+
+void keep_pareto_front(std::vector<StandInCandidate>& candidates, uint64_t finest_bytes,
+                       uint64_t uses) {
+    // A level that saves less than this over a better one is not worth its place on disk. Taste.
+    constexpr double kSameCost = 1.02;
+    const auto bytes = [&](const StandInCandidate& candidate) { return bytes_of(candidate, uses); };
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [&](const StandInCandidate& a, const StandInCandidate& b) {
+                         return bytes(a) != bytes(b) ? bytes(a) < bytes(b) : a.error < b.error;
+                     });
+    std::vector<StandInCandidate> front;  // cheapest first, errors falling
+    for (StandInCandidate& candidate : candidates) {
+        if (bytes(candidate) >= static_cast<double>(finest_bytes) ||
+            (!front.empty() && candidate.error >= front.back().error))
+            continue;
+        if (!front.empty() && bytes(candidate) < kSameCost * bytes(front.back()))
+            front.back() = std::move(candidate);
+        else
+            front.push_back(std::move(candidate));
+    }
+    std::reverse(front.begin(), front.end());
+    candidates = std::move(front);
+}
 
 bool prove_candidates(std::vector<StandInCandidate>& some, std::vector<StandInCandidate>& all,
                       const MeasuredFinest& finest, const Job& job) {

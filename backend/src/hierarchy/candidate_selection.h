@@ -10,7 +10,12 @@
 
 namespace lodestone::hierarchy {
 
-/// Drops what is of no use beside the others, and sorts the rest, finest first.
+/// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
+/// bytes and error), and those that cost no less than `finest_bytes`; with so many occurrences.
+void keep_pareto_front(std::vector<StandInCandidate>& candidates, uint64_t finest_bytes,
+                       uint64_t uses = 1);
+
+/// Drops what is of no use beside the others, and sorts what is left, finest first.
 using Keep = std::function<void(std::vector<StandInCandidate>&)>;
 
 /// Looks at those of `some` that nobody has looked at: what shows too little is in neither list any

@@ -2,7 +2,7 @@
 #include "hierarchy/finest.h"
 
 #include "hierarchy/counted_error.h"
-#include "hierarchy/evaluators/lamp_glow.h"
+#include "hierarchy/lamp_materials.h"
 #include "measure/visible/surface_opacity.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Flatten: a group as one mesh, its children at the detail asked for.
 #pragma once
 
-#include "hierarchy/object_stand_ins.h"
+#include "hierarchy/mesh_source.h"
 #include "hierarchy/opened_group.h"
 
 namespace lodestone::hierarchy {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/group_limits.h"
 
+#include "hierarchy/candidate_selection.h"
 #include "hierarchy/counted_error.h"
 #include "hierarchy/environment_objects.h"
 #include "hierarchy/proposers/collapse_levels.h"

@@ -5,10 +5,11 @@
 #include "base/job.h"
 #include "hierarchy/build_settings.h"
 #include "hierarchy/candidate.h"
+#include "hierarchy/mesh_source.h"
 #include "image/decoded_texels.h"
 #include "model/model.h"
 
-#include <functional>
+#include <vector>
 
 namespace lodestone::hierarchy {
 
@@ -19,9 +20,6 @@ struct StandIns {
 
 struct StandInSurroundings;  // hierarchy/run/stand_in_surroundings.h
 
-/// Gives the mesh of a representation, resident or not. Called from several threads.
-using MeshSource = std::function<std::shared_ptr<const Mesh>(const Representation&)>;
-
 /// Levels and primitives of an object whose finest representation is a mesh. Something see-through
 /// (foliage on cards, glass) has levels alone: no solid shows what it shows. `texels` are shared by
 /// all objects of a build.
@@ -29,7 +27,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
                            const StandInSurroundings& surroundings, const BuildSettings& settings,
                            const MeshSource& source, image::TexelCache& texels, const Job& job);
 
-/// Of a group whose children have theirs: flattened as finely as a stand-in can pay,
+/// Stand-ins of a group whose children have theirs: flattened as finely as a stand-in can pay,
 /// without what cannot be seen from outside, simplified and replaced. Never empty when anything
 /// below can be drawn.
 StandIns stand_ins_of_group(const Model& model, ObjectIndex group,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards hierarchies of things one can see through, and of textured things in one atlas.
 #include "base/files.h"
-#include "hierarchy/candidate.h"
+#include "hierarchy/candidate_selection.h"
 #include "hierarchy/flattened_group.h"
 #include "hierarchy/hierarchy_build.h"
 #include "hierarchy/object_stand_ins.h"

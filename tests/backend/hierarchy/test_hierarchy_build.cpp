@@ -477,23 +477,3 @@ TEST_F(Hierarchy, CutOfTheBuiltModelKeepsItsPromise) {
     EXPECT_LE(fine.largest_error_px, 1);
     EXPECT_LT(fine.triangles * 4, full.triangles);
 }
-
-TEST(KeepUseful, DropsWhatIsNoBetterThanSomethingCheaper) {
-    std::vector<hierarchy::StandInCandidate> candidates;
-    const auto add = [&](uint32_t side, double error) {
-        hierarchy::StandInCandidate candidate;
-        candidate.mesh = std::make_shared<const Mesh>(shapes::terrain(side));
-        candidate.error = error;
-        candidates.push_back(candidate);
-    };
-    add(10, 0.3);
-    add(20, 0.2);
-    add(30, 0.25);  // worse than the cheaper one of 20
-    add(40, 0.1);
-    add(90, 0.01);  // no cheaper than the finest
-    hierarchy::keep_pareto_front(candidates, uint64_t{2} * 90 * 90 * 245);
-    ASSERT_EQ(candidates.size(), 3u);
-    EXPECT_EQ(candidates[0].error, 0.1);
-    EXPECT_EQ(candidates[1].error, 0.2);
-    EXPECT_EQ(candidates[2].error, 0.3);
-}

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/evaluators/brightness_match.h"
 
-#include "hierarchy/evaluators/lamp_glow.h"
 #include "hierarchy/evaluators/traced_candidate.h"
+#include "hierarchy/lamp_materials.h"
 #include "solids/stand_in_material.h"
 
 #include <glm/common.hpp>

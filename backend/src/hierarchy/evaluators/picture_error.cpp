@@ -2,8 +2,8 @@
 #include "hierarchy/evaluators/picture_error.h"
 
 #include "base/error.h"
-#include "hierarchy/evaluators/lamp_glow.h"
 #include "hierarchy/evaluators/traced_candidate.h"
+#include "hierarchy/lamp_materials.h"
 #include "solids/stand_in_material.h"
 
 #include <algorithm>

@@ -2,7 +2,8 @@
 // Levels of what deforms: collapsed once, put where the surface is in each frame.
 #pragma once
 
-#include "hierarchy/object_stand_ins.h"
+#include "hierarchy/candidate.h"
+#include "hierarchy/mesh_source.h"
 #include "hierarchy/run/deforming_poses.h"
 #include "segment/bound_level_file.h"
 

@@ -2,8 +2,8 @@
 #include "hierarchy/proposers/measured_levels.h"
 
 #include "hierarchy/evaluators/distance_error.h"
-#include "hierarchy/evaluators/lamp_glow.h"
 #include "hierarchy/proposers/collapse_levels.h"
+#include "hierarchy/proposers/lamp_levels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "group/loose_surfaces.h"
 #include "hierarchy/evaluators/brightness_match.h"
-#include "hierarchy/evaluators/lamp_glow.h"
+#include "hierarchy/lamp_materials.h"
 #include "measure/pictures/picture_agreement.h"
 #include "measure/visible/visible_attributes.h"
 #include "solids/stand_in_material.h"

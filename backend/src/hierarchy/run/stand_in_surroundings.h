@@ -4,7 +4,7 @@
 
 #include "base/hash.h"
 #include "base/job.h"
-#include "hierarchy/object_stand_ins.h"
+#include "hierarchy/mesh_source.h"
 #include "model/model.h"
 
 namespace lodestone::hierarchy {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards lamps: what glows in the midst of something else stays there, and stays as bright.
-#include "hierarchy/evaluators/lamp_glow.h"
+#include "hierarchy/lamp_materials.h"
+#include "hierarchy/proposers/lamp_levels.h"
 #include "measure/deviation/surface_deviation.h"
 #include "measure/pictures/picture_agreement.h"
 #include "scenes/built_models.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hierarchy/evaluators/lamp_glow.h"
+#include "hierarchy/proposers/lamp_levels.h"
 
 #include "group/loose_surfaces.h"
+#include "hierarchy/lamp_materials.h"
 #include "simplify/simplify.h"
 
 #include <algorithm>
@@ -85,33 +86,6 @@ std::vector<Mesh> levels_of(const Mesh& mesh, const std::vector<size_t>& counts,
 }
 
 }  // namespace
-
-bool emits(const Material& material) {
-    return material.emission != glm::dvec3(0.0) || (material.other && emits(*material.other));
-}
-
-void emit_more(Material& material, const glm::dvec3& factor) {
-    material.emission *= factor;
-    if (material.emission_texture) {
-        const double mean = (factor.x + factor.y + factor.z) / 3;
-        material.emission_texture.scale *= mean;
-        material.emission_texture.offset *= mean;
-    }
-    if (material.other) {
-        Material other = *material.other;
-        emit_more(other, factor);
-        material.other = std::make_shared<const Material>(std::move(other));
-    }
-}
-
-Material unlit(const Material& material) {
-    Material out = material;
-    out.base_color = glm::dvec3(0.0);
-    out.base_color_texture = Texture{};
-    if (material.other)
-        out.other = std::make_shared<const Material>(unlit(*material.other));
-    return out;
-}
 
 std::vector<Mesh> simplify_with_lamps(const Mesh& mesh, std::span<const Material> materials,
                                       std::span<const size_t> targets, const Job& job) {
