@@ -76,60 +76,71 @@ public:
     Material material() const {
         Material made;
         made.name = name_of(given_.name);
-        made.base_color = vector(given_.base_color, "material.base_color");
-        made.emission = vector(given_.emission, "material.emission");
-        made.roughness = finite(given_.roughness, "roughness");
-        made.metallic = finite(given_.metallic, "metallic");
-        made.specular = finite(given_.specular, "specular");
-        made.base_color_texture = texture(given_.base_color_texture);
-        made.roughness_texture = texture(given_.roughness_texture);
-        made.metallic_texture = texture(given_.metallic_texture);
-        made.emission_texture = texture(given_.emission_texture);
-        made.vertex_colors = given_.vertex_colors != 0;
-        made.alpha = finite(given_.alpha, "alpha");
-        made.alpha_texture = texture(given_.alpha_texture);
-        if (given_.alpha_mode < LDS_ALPHA_MODE_OPAQUE || given_.alpha_mode > LDS_ALPHA_MODE_CLIP)
-            fail(Status::InvalidArgument, owner_, " has alpha mode ", given_.alpha_mode);
-        made.alpha_mode = static_cast<AlphaMode>(given_.alpha_mode);
-        made.alpha_cutoff = finite(given_.alpha_cutoff, "alpha_cutoff");
-        made.transmission = finite(given_.transmission, "transmission");
-        made.ior = finite(given_.ior, "ior");
-        made.clearcoat = finite(given_.clearcoat, "clearcoat");
-        made.clearcoat_roughness = finite(given_.clearcoat_roughness, "clearcoat_roughness");
-        made.normal_texture = texture(given_.normal_texture);
-        made.normal_strength = finite(given_.normal_strength, "normal_strength");
-        made.bump_texture = texture(given_.bump_texture);
-        made.bump_distance = finite(given_.bump_distance, "bump_distance");
-        if (given_.other != 0) {
-            if (given_.other > model_.model.materials.size())
-                fail(Status::InvalidArgument, owner_, " is mixed with material ", given_.other - 1,
-                     " of ", model_.model.materials.size());
-            made.other = std::make_shared<Material>(model_.model.materials[given_.other - 1]);
-            int mixtures = 0;
-            for (const Material* at = &made; at->other; at = at->other.get())
-                ++mixtures;
-            if (mixtures > kMostMixtures)
-                fail(Status::InvalidArgument, owner_, " is mixed more than ", kMostMixtures,
-                     " times");
-            made.mix = finite(given_.mix, "mix");
-            made.mix_texture = texture(given_.mix_texture);
-        }
+#define LODESTONE_COPY_FIELD(name, presence, clamped, believed)                   \
+    if (FieldPresence::presence != FieldPresence::WithOther || given_.other != 0) \
+        copy_field(made.name, given_.name, #name);
+        LODESTONE_MATERIAL_FIELDS(LODESTONE_COPY_FIELD)
+#undef LODESTONE_COPY_FIELD
         clamp_numbers(made);
         return made;
     }
 
 private:
-    double finite(double value, const char* what) const {
+    void copy_field(glm::dvec3& out, const double (&value)[3], const char* what) const {
+        out = vector(value, text("material.", what).c_str());
+    }
+    void copy_field(double& out, double value, const char* what) const {
         if (!std::isfinite(value))
             fail(Status::InvalidArgument, what, " of ", owner_, " is not finite");
-        return value;
+        out = value;
     }
-    Texture texture(const lds_texture& given) const { return texture_of(model_, given, owner_); }
+    void copy_field(Texture& out, const lds_texture& value, const char*) const {
+        out = texture_of(model_, value, owner_);
+    }
+    static void copy_field(bool& out, int32_t value, const char*) {
+        out = value != 0;
+    }
+    void copy_field(AlphaMode& out, int32_t value, const char*) const {
+        if (value < LDS_ALPHA_MODE_OPAQUE || value > LDS_ALPHA_MODE_CLIP)
+            fail(Status::InvalidArgument, owner_, " has alpha mode ", value);
+        out = static_cast<AlphaMode>(value);
+    }
+    /// `value`: 1 + the index of the other material; 0: none.
+    void copy_field(std::shared_ptr<const Material>& out, uint32_t value, const char*) const {
+        if (value == 0)
+            return;
+        const std::vector<Material>& materials = model_.model.materials;
+        if (value > materials.size())
+            fail(Status::InvalidArgument, owner_, " is mixed with material ", value - 1, " of ",
+                 materials.size());
+        out = std::make_shared<Material>(materials[value - 1]);
+        int mixtures = 0;
+        for (const Material* at = out.get(); at != nullptr; at = at->other.get())
+            ++mixtures;
+        if (mixtures > kMostMixtures)
+            fail(Status::InvalidArgument, owner_, " is mixed more than ", kMostMixtures, " times");
+    }
 
     const lds_model& model_;
     const lds_material& given_;
     std::string owner_;
 };
+
+// The fields of a new lds_material; it has no textures and no other material.
+void set_default(double (&out)[3], const glm::dvec3& value) {
+    copy(value, out);
+}
+void set_default(double& out, double value) {
+    out = value;
+}
+void set_default(int32_t& out, bool value) {
+    out = value ? 1 : 0;
+}
+void set_default(int32_t& out, AlphaMode value) {
+    out = static_cast<int32_t>(value);
+}
+void set_default(const lds_texture&, const Texture&) {}
+void set_default(uint32_t, const std::shared_ptr<const Material>&) {}
 
 /// The model's index of a picture; that of an equal one when there is one.
 uint32_t index_of(lds_model& model, const PicturePtr& made) {
@@ -232,18 +243,10 @@ lds_status lds_material_default(lds_material* material) {
     return guard([&] {
         const Material standard;
         lds_material out{};
-        for (int i = 0; i < 3; ++i) {
-            out.base_color[i] = standard.base_color[i];
-            out.emission[i] = standard.emission[i];
-        }
-        out.roughness = standard.roughness;
-        out.metallic = standard.metallic;
-        out.specular = standard.specular;
-        out.alpha = standard.alpha;
-        out.alpha_cutoff = standard.alpha_cutoff;
-        out.ior = standard.ior;
-        out.clearcoat_roughness = standard.clearcoat_roughness;
-        out.normal_strength = standard.normal_strength;
+#define LODESTONE_DEFAULT_FIELD(name, presence, clamped, believed) \
+    set_default(out.name, standard.name);
+        LODESTONE_MATERIAL_FIELDS(LODESTONE_DEFAULT_FIELD)
+#undef LODESTONE_DEFAULT_FIELD
         hand_out(material, out, "material");
     });
 }

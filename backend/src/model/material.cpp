@@ -5,40 +5,57 @@
 
 namespace lodestone {
 
+namespace {
+
+// What one more field gives away: a member that is not in the list. Any converts to every type, so
+// that a struct has as many members as there are Anys to make it of.
+struct Any {
+    template <typename Value>
+    operator Value() const;
+};
+template <typename Struct, typename... Anys>
+constexpr size_t member_count() {
+    if constexpr (requires { Struct{Anys{}..., Any{}}; })
+        return member_count<Struct, Anys..., Any>();
+    else
+        return sizeof...(Anys);
+}
+constexpr size_t listed_count() {
+    size_t count = 0;
+    for_each_field([&](const auto&) { ++count; });
+    return count;
+}
+static_assert(member_count<Material>() == listed_count() + 1,
+              "a member of Material, besides its name, is not in LODESTONE_MATERIAL_FIELDS");
+
+}  // namespace
+
 void clamp_numbers(Material& material) {
-    for (double* share : {&material.roughness, &material.metallic, &material.specular,
-                          &material.alpha, &material.alpha_cutoff, &material.transmission,
-                          &material.clearcoat, &material.clearcoat_roughness, &material.mix})
-        *share = std::clamp(*share, 0.0, 1.0);
-    material.ior = std::clamp(material.ior, 0.1, 10.0);
-    material.normal_strength = std::clamp(material.normal_strength, 0.0, 10.0);
+    for_each_field_of<double>([&](const MaterialField<double>& field) {
+        double& number = material.*field.member;
+        number = std::clamp(number, field.clamped.low, field.clamped.high);
+    });
 }
 
 Hash hash_of(const Material& material) {
     Hasher hasher;
-    for (int i = 0; i < 3; ++i)
-        hasher.value(material.base_color[i]).value(material.emission[i]);
-    for (const Texture* texture :
-         {&material.base_color_texture, &material.roughness_texture, &material.metallic_texture,
-          &material.emission_texture, &material.alpha_texture, &material.normal_texture,
-          &material.bump_texture, &material.mix_texture})
-        hasher.value(hash_of(*texture));
-    return hasher.value(material.roughness)
-        .value(material.metallic)
-        .value(material.specular)
-        .value(material.vertex_colors)
-        .value(material.alpha)
-        .value(material.alpha_mode)
-        .value(material.alpha_cutoff)
-        .value(material.transmission)
-        .value(material.ior)
-        .value(material.clearcoat)
-        .value(material.clearcoat_roughness)
-        .value(material.normal_strength)
-        .value(material.bump_distance)
-        .value(material.other ? hash_of(*material.other) : Hash{0})
-        .value(material.mix)
-        .result();
+    for (int i = 0; i < 3; ++i) {
+        for_each_field_of<glm::dvec3>([&](const MaterialField<glm::dvec3>& field) {
+            hasher.value((material.*field.member)[i]);
+        });
+    }
+    for_each_field_of<Texture>([&](const MaterialField<Texture>& field) {
+        hasher.value(hash_of(material.*field.member));
+    });
+    for_each_field([&](const auto& field) {
+        const auto& value = material.*field.member;
+        using Value = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, std::shared_ptr<const Material>>)
+            hasher.value(value ? hash_of(*value) : Hash{0});
+        else if constexpr (!std::is_same_v<Value, glm::dvec3> && !std::is_same_v<Value, Texture>)
+            hasher.value(value);
+    });
+    return hasher.result();
 }
 
 bool textured(const Material& material) {

@@ -2,9 +2,11 @@
 // Material: what a surface looks like, in the terms of the principled model.
 #pragma once
 
+#include "base/maths.h"
 #include "model/texture.h"
 
 #include <string>
+#include <type_traits>
 
 namespace lodestone {
 
@@ -55,8 +57,87 @@ struct Material {
 
 inline constexpr int kMostMixtures = 64;  // deeper ones are a mistake or an attack
 
-/// Brings its own numbers, which are finite, into their ranges: shares 0...1, ior .1...10, normal
-/// strength 0...10.
+/// The numbers that a field of a material may have.
+struct NumberRange {
+    double low = 0;
+    double high = 1;
+};
+inline constexpr NumberRange kAnyNumber{-kInfinity, kInfinity};
+inline constexpr NumberRange kFiniteNumber{-1e300, 1e300};
+inline constexpr NumberRange kPositiveNumber{0, 1e300};
+inline constexpr NumberRange kShare{};
+
+/// When a store says a field. It is what the formats of earlier stores have.
+enum class FieldPresence : uint8_t {
+    Always,
+    Unusual,        // where it differs from that of a new Material
+    WithAlphaMode,  // where the alpha mode is not Opaque
+    WithOther,      // where there is another material
+};
+
+/// All fields of Material but its name, in the order in which they are hashed: the name, when a
+/// store says it, the range that clamp_numbers() brings it into, and the range that our glTF files
+/// may hold. Whatever copies, stores, reads or hashes materials goes by this list, so that a field
+/// is listed here and nowhere else.
+#define LODESTONE_MATERIAL_FIELDS(FIELD)                                      \
+    FIELD(base_color, Always, kAnyNumber, kPositiveNumber)                    \
+    FIELD(emission, Always, kAnyNumber, kPositiveNumber)                      \
+    FIELD(base_color_texture, Unusual, kAnyNumber, kAnyNumber)                \
+    FIELD(roughness_texture, Unusual, kAnyNumber, kAnyNumber)                 \
+    FIELD(metallic_texture, Unusual, kAnyNumber, kAnyNumber)                  \
+    FIELD(emission_texture, Unusual, kAnyNumber, kAnyNumber)                  \
+    FIELD(alpha_texture, Unusual, kAnyNumber, kAnyNumber)                     \
+    FIELD(normal_texture, Unusual, kAnyNumber, kAnyNumber)                    \
+    FIELD(bump_texture, Unusual, kAnyNumber, kAnyNumber)                      \
+    FIELD(mix_texture, WithOther, kAnyNumber, kAnyNumber)                     \
+    FIELD(roughness, Always, kShare, kShare)                                  \
+    FIELD(metallic, Always, kShare, kShare)                                   \
+    FIELD(specular, Always, kShare, kPositiveNumber)                          \
+    FIELD(vertex_colors, Unusual, kAnyNumber, kAnyNumber)                     \
+    FIELD(alpha, Unusual, kShare, kShare)                                     \
+    FIELD(alpha_mode, Unusual, kAnyNumber, kAnyNumber)                        \
+    FIELD(alpha_cutoff, WithAlphaMode, kShare, kFiniteNumber)                 \
+    FIELD(transmission, Unusual, kShare, kShare)                              \
+    FIELD(ior, Unusual, (NumberRange{0.1, 10}), (NumberRange{1e-300, 1e300})) \
+    FIELD(clearcoat, Unusual, kShare, kShare)                                 \
+    FIELD(clearcoat_roughness, Unusual, kShare, kShare)                       \
+    FIELD(normal_strength, Unusual, (NumberRange{0, 10}), kFiniteNumber)      \
+    FIELD(bump_distance, Unusual, kAnyNumber, kFiniteNumber)                  \
+    FIELD(other, Unusual, kAnyNumber, kAnyNumber)                             \
+    FIELD(mix, WithOther, kShare, kShare)
+
+/// A field of Material: its name in files and in the C interface, and where it is.
+template <typename Value>
+struct MaterialField {
+    const char* key;
+    Value Material::*member;
+    FieldPresence presence;
+    NumberRange clamped;
+    NumberRange believed;
+};
+
+/// Calls visit(MaterialField<Value>) for every field in the order of the list. Value is glm::dvec3,
+/// Texture, double, bool, AlphaMode or std::shared_ptr<const Material>: a visitor that is an
+/// overload for each does not compile when a field of a new type comes.
+template <typename Visit>
+constexpr void for_each_field(Visit&& visit) {
+#define LODESTONE_VISIT_FIELD(name, presence, clamped, believed)                                   \
+    visit(MaterialField<decltype(Material::name)>{#name, &Material::name, FieldPresence::presence, \
+                                                  clamped, believed});
+    LODESTONE_MATERIAL_FIELDS(LODESTONE_VISIT_FIELD)
+#undef LODESTONE_VISIT_FIELD
+}
+
+/// The same for the fields that are a Value.
+template <typename Value, typename Visit>
+constexpr void for_each_field_of(Visit&& visit) {
+    for_each_field([&](const auto& field) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(field)>, MaterialField<Value>>)
+            visit(field);
+    });
+}
+
+/// Brings its own numbers, which are finite, into their ranges.
 void clamp_numbers(Material& material);
 
 /// Of everything but the names.
@@ -69,13 +150,10 @@ bool textured(const Material& material);
 /// const Material.
 template <typename Material_, typename Visit>
 void for_own_textures(Material_& material, const Visit& visit) {
-    for (auto* texture :
-         {&material.base_color_texture, &material.roughness_texture, &material.metallic_texture,
-          &material.emission_texture, &material.alpha_texture, &material.normal_texture,
-          &material.bump_texture, &material.mix_texture}) {
-        if (*texture)
-            visit(*texture);
-    }
+    for_each_field_of<Texture>([&](const MaterialField<Texture>& field) {
+        if (material.*field.member)
+            visit(material.*field.member);
+    });
 }
 
 /// The same, those of the other included.

@@ -62,48 +62,65 @@ Json out(const Texture& t, PictureList& pictures) {
             {"offset", out(t.offset)}};
 }
 
-Json out(const Material& m, PictureList& pictures) {
-    Json json = {{"name", m.name},           {"base_color", out(m.base_color)},
-                 {"roughness", m.roughness}, {"metallic", m.metallic},
-                 {"specular", m.specular},   {"emission", out(m.emission)}};
-    // The rest is written where it says something: most materials have none of it.
-    const Material standard;
-    if (m.vertex_colors)
-        json["vertex_colors"] = true;
-    if (m.alpha_mode != AlphaMode::Opaque) {
-        json["alpha_mode"] = static_cast<int>(m.alpha_mode);
-        json["alpha_cutoff"] = m.alpha_cutoff;
+/// Writes what a field of a material says.
+class MaterialWords {
+public:
+    MaterialWords(const Material& material, PictureList& pictures)
+        : m_(material), pictures_(pictures) {}
+
+    Json words() {
+        json_["name"] = m_.name;
+        for_each_field([this](const auto& field) { say(field, m_.*field.member); });
+        return std::move(json_);
     }
-    const auto number = [&](const char* key, double value, double usual) {
-        if (value != usual)
-            json[key] = value;
-    };
-    number("alpha", m.alpha, standard.alpha);
-    number("transmission", m.transmission, standard.transmission);
-    number("ior", m.ior, standard.ior);
-    number("clearcoat", m.clearcoat, standard.clearcoat);
-    number("clearcoat_roughness", m.clearcoat_roughness, standard.clearcoat_roughness);
-    number("normal_strength", m.normal_strength, standard.normal_strength);
-    number("bump_distance", m.bump_distance, standard.bump_distance);
-    const std::pair<const char*, const Texture&> textures[] = {
-        {"base_color_texture", m.base_color_texture},
-        {"roughness_texture", m.roughness_texture},
-        {"metallic_texture", m.metallic_texture},
-        {"emission_texture", m.emission_texture},
-        {"alpha_texture", m.alpha_texture},
-        {"normal_texture", m.normal_texture},
-        {"bump_texture", m.bump_texture},
-        {"mix_texture", m.mix_texture}};
-    for (const auto& [key, texture] : textures) {
+
+private:
+    void say(const MaterialField<glm::dvec3>& field, const glm::dvec3& color) {
+        json_[field.key] = out(color);
+    }
+    void say(const MaterialField<double>& field, double number) {
+        if (said(field, number))
+            json_[field.key] = number;
+    }
+    void say(const MaterialField<Texture>& field, const Texture& texture) {
         if (texture)
-            json[key] = out(texture, pictures);
+            json_[field.key] = out(texture, pictures_);
     }
-    if (m.other) {
-        json["other"] = out(*m.other, pictures);
-        json["mix"] = m.mix;
+    void say(const MaterialField<bool>& field, bool truth) {
+        if (said(field, truth))
+            json_[field.key] = truth;
     }
-    return json;
-}
+    void say(const MaterialField<AlphaMode>& field, AlphaMode mode) {
+        if (said(field, mode))
+            json_[field.key] = static_cast<int>(mode);
+    }
+    void say(const MaterialField<std::shared_ptr<const Material>>& field,
+             const std::shared_ptr<const Material>& other) {
+        if (other)
+            json_[field.key] = MaterialWords(*other, pictures_).words();
+    }
+
+    /// Most materials have nothing but what is always said.
+    template <typename Value>
+    bool said(const MaterialField<Value>& field, const Value& value) const {
+        static const Material kStandard;
+        switch (field.presence) {
+            case FieldPresence::Always:
+                return true;
+            case FieldPresence::Unusual:
+                return value != kStandard.*field.member;
+            case FieldPresence::WithAlphaMode:
+                return m_.alpha_mode != AlphaMode::Opaque;
+            case FieldPresence::WithOther:
+                return m_.other != nullptr;
+        }
+        return true;
+    }
+
+    const Material& m_;
+    PictureList& pictures_;
+    Json json_ = Json::object();
+};
 
 Json out(const Attributes& a) {
     return {{"visible_area", a.visible_area},
@@ -210,7 +227,7 @@ Json describe(const Model& model) {
     Json& materials = json["materials"] = Json::array();
     PictureList pictures;
     for (const Material& material : model.materials)
-        materials.push_back(out(material, pictures));
+        materials.push_back(MaterialWords(material, pictures).words());
     Json& objects = json["objects"] = Json::array();
     for (const Object& object : model.objects) {
         Json one = {{"uid", object.uid},

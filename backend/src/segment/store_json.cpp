@@ -116,43 +116,57 @@ Texture texture(const Json& material, const char* key, const Pictures& pictures)
     return t;
 }
 
-Material material(const Json& json, const Pictures& pictures, int depth = 0) {
-    if (depth > kMostMixtures)
-        fail(Status::BadFile, "a material is mixed more than ", kMostMixtures, " times");
-    Material m;
-    m.name = json.at("name").get<std::string>();
-    m.base_color = vector(json, "base_color");
-    m.roughness = number(json, "roughness");
-    m.metallic = number(json, "metallic");
-    m.specular = number(json, "specular");
-    m.emission = vector(json, "emission");
-    m.base_color_texture = texture(json, "base_color_texture", pictures);
-    m.roughness_texture = texture(json, "roughness_texture", pictures);
-    m.metallic_texture = texture(json, "metallic_texture", pictures);
-    m.emission_texture = texture(json, "emission_texture", pictures);
-    m.vertex_colors = json.value("vertex_colors", false);
-    m.alpha = number_or(json, "alpha", m.alpha);
-    m.alpha_texture = texture(json, "alpha_texture", pictures);
-    if (json.contains("alpha_mode")) {
-        m.alpha_mode = choice(json, "alpha_mode", AlphaMode::Clip);
-        m.alpha_cutoff = number(json, "alpha_cutoff");
+/// Reads what a field of a material says.
+class MaterialReader {
+public:
+    MaterialReader(const Json& json, const Pictures& pictures, int depth = 0)
+        : json_(json), pictures_(pictures), depth_(depth) {}
+
+    Material material() {
+        if (depth_ > kMostMixtures)
+            fail(Status::BadFile, "a material is mixed more than ", kMostMixtures, " times");
+        made_.name = json_.at("name").get<std::string>();
+        for_each_field([this](const auto& field) {
+            if (told(field))
+                read(field.key, made_.*field.member);
+        });
+        clamp_numbers(made_);
+        return std::move(made_);
     }
-    m.transmission = number_or(json, "transmission", m.transmission);
-    m.ior = number_or(json, "ior", m.ior);
-    m.clearcoat = number_or(json, "clearcoat", m.clearcoat);
-    m.clearcoat_roughness = number_or(json, "clearcoat_roughness", m.clearcoat_roughness);
-    m.normal_texture = texture(json, "normal_texture", pictures);
-    m.normal_strength = number_or(json, "normal_strength", m.normal_strength);
-    m.bump_texture = texture(json, "bump_texture", pictures);
-    m.bump_distance = number_or(json, "bump_distance", m.bump_distance);
-    if (json.contains("other")) {
-        m.other = std::make_shared<Material>(material(json.at("other"), pictures, depth + 1));
-        m.mix = number(json, "mix");
-        m.mix_texture = texture(json, "mix_texture", pictures);
+
+private:
+    template <typename Value>
+    bool told(const MaterialField<Value>& field) const {
+        switch (field.presence) {
+            case FieldPresence::Always:
+                return true;
+            case FieldPresence::Unusual:
+                return json_.contains(field.key);
+            case FieldPresence::WithAlphaMode:
+                return json_.contains("alpha_mode");
+            case FieldPresence::WithOther:
+                return json_.contains("other");
+        }
+        return true;
     }
-    clamp_numbers(m);
-    return m;
-}
+
+    void read(const char* key, glm::dvec3& color) const { color = vector(json_, key); }
+    void read(const char* key, double& out) const { out = number(json_, key); }
+    void read(const char* key, Texture& out) const { out = texture(json_, key, pictures_); }
+    void read(const char* key, bool& truth) const { truth = json_.at(key).get<bool>(); }
+    void read(const char* key, AlphaMode& mode) const {
+        mode = choice(json_, key, AlphaMode::Clip);
+    }
+    void read(const char* key, std::shared_ptr<const Material>& other) const {
+        other = std::make_shared<Material>(
+            MaterialReader(json_.at(key), pictures_, depth_ + 1).material());
+    }
+
+    const Json& json_;
+    const Pictures& pictures_;
+    int depth_;
+    Material made_;
+};
 
 Attributes attributes(const Json& json) {
     Attributes a;
@@ -355,7 +369,7 @@ Model model_of(const Json& json) {
     for (const Json& one : json.at("pictures"))
         pictures.push_back(picture(one));
     for (const Json& one : json.at("materials"))
-        model.materials.push_back(material(one, pictures));
+        model.materials.push_back(MaterialReader(one, pictures).material());
     const Json& objects = json.at("objects");
     for (const Json& one : objects)
         model.objects.push_back(object(one, objects.size(), model.materials.size()));

@@ -22,42 +22,6 @@ using tinygltf::Value;
 constexpr int kMostMixtures = 32;  // each nests the JSON one deeper
 constexpr double kAny = 1e300;
 
-struct NumberWord {
-    const char* key;
-    double Material::*field;
-    double low;
-    double high;
-};
-
-constexpr NumberWord kNumbers[] = {
-    {"roughness", &Material::roughness, 0, 1},
-    {"metallic", &Material::metallic, 0, 1},
-    {"specular", &Material::specular, 0, kAny},
-    {"alpha", &Material::alpha, 0, 1},
-    {"alpha_cutoff", &Material::alpha_cutoff, -kAny, kAny},
-    {"transmission", &Material::transmission, 0, 1},
-    {"ior", &Material::ior, 1e-300, kAny},
-    {"clearcoat", &Material::clearcoat, 0, 1},
-    {"clearcoat_roughness", &Material::clearcoat_roughness, 0, 1},
-    {"normal_strength", &Material::normal_strength, -kAny, kAny},
-    {"bump_distance", &Material::bump_distance, -kAny, kAny},
-    {"mix", &Material::mix, 0, 1},
-};
-
-constexpr std::pair<const char*, glm::dvec3 Material::*> kColorFields[] = {
-    {"base_color", &Material::base_color}, {"emission", &Material::emission}};
-
-constexpr std::pair<const char*, Texture Material::*> kTextureFields[] = {
-    {"base_color_texture", &Material::base_color_texture},
-    {"roughness_texture", &Material::roughness_texture},
-    {"metallic_texture", &Material::metallic_texture},
-    {"emission_texture", &Material::emission_texture},
-    {"alpha_texture", &Material::alpha_texture},
-    {"normal_texture", &Material::normal_texture},
-    {"bump_texture", &Material::bump_texture},
-    {"mix_texture", &Material::mix_texture},
-};
-
 bool same_bits(double a, double b) {
     return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b);
 }
@@ -105,43 +69,67 @@ Value words_of(const Texture& texture, GltfPictureWriter& pictures) {
     return Value(std::move(out));
 }
 
-/// Of everything where the two differ.
-Value::Object difference(const Material& material, const Material& seen,
-                         GltfPictureWriter& pictures, int depth) {
-    Value::Object out;
-    for (const NumberWord& word : kNumbers) {
-        const double number = material.*word.field;
-        if (!same_bits(number, seen.*word.field) && number >= word.low && number <= word.high)
-            out[word.key] = Value(number);
+/// Writes every field where two materials differ.
+class MaterialDifference {
+public:
+    MaterialDifference(const Material& material, const Material& seen, GltfPictureWriter& pictures,
+                       int depth = 0)
+        : material_(material), seen_(seen), pictures_(pictures), depth_(depth) {}
+
+    Value::Object words() {
+        for_each_field([this](const auto& field) {
+            say(field, material_.*field.member, seen_.*field.member);
+        });
+        return std::move(out_);
     }
-    for (const auto& [key, field] : kColorFields) {
-        const glm::dvec3& color = material.*field;
+
+private:
+    void say(const MaterialField<double>& field, double number, double seen) {
+        if (!same_bits(number, seen) && number >= field.believed.low &&
+            number <= field.believed.high)
+            out_[field.key] = Value(number);
+    }
+    void say(const MaterialField<glm::dvec3>& field, const glm::dvec3& color,
+             const glm::dvec3& seen) {
         bool same = true;
         for (int i = 0; i < 3; ++i)
-            same = same && same_bits(color[i], (seen.*field)[i]);
+            same = same && same_bits(color[i], seen[i]);
         if (!same && finite(numbers_of(color)))
-            out[key] = list_of(numbers_of(color));
+            out_[field.key] = list_of(numbers_of(color));
     }
-    for (const auto& [key, field] : kTextureFields) {
-        const Texture& texture = material.*field;
-        if (hash_of(texture) == hash_of(seen.*field))
-            continue;
+    void say(const MaterialField<Texture>& field, const Texture& texture, const Texture& seen) {
+        if (hash_of(texture) == hash_of(seen))
+            return;
         if (sayable(texture))
-            out[key] = words_of(texture, pictures);
+            out_[field.key] = words_of(texture, pictures_);
         else if (!texture)
-            out[key] = Value(false);
+            out_[field.key] = Value(false);
     }
-    if (material.vertex_colors != seen.vertex_colors)
-        out["vertex_colors"] = Value(material.vertex_colors);
-    if (material.alpha_mode != seen.alpha_mode)
-        out["alpha_mode"] = Value(static_cast<int>(material.alpha_mode));
-    if (material.other && depth < kMostMixtures) {
-        Value::Object other = difference(*material.other, Material{}, pictures, depth + 1);
-        other["name"] = Value(valid_utf8(material.other->name));
-        out["other"] = Value(std::move(other));
+    void say(const MaterialField<bool>& field, bool truth, bool seen) {
+        if (truth != seen)
+            out_[field.key] = Value(truth);
     }
-    return out;
-}
+    void say(const MaterialField<AlphaMode>& field, AlphaMode mode, AlphaMode seen) {
+        if (mode != seen)
+            out_[field.key] = Value(static_cast<int>(mode));
+    }
+    /// glTF has no words for mixtures: what is seen has no other.
+    void say(const MaterialField<std::shared_ptr<const Material>>& field,
+             const std::shared_ptr<const Material>& other, const std::shared_ptr<const Material>&) {
+        if (!other || depth_ >= kMostMixtures)
+            return;
+        const Material standard;
+        Value::Object words = MaterialDifference(*other, standard, pictures_, depth_ + 1).words();
+        words["name"] = Value(valid_utf8(other->name));
+        out_[field.key] = Value(std::move(words));
+    }
+
+    const Material& material_;
+    const Material& seen_;
+    GltfPictureWriter& pictures_;
+    int depth_;
+    Value::Object out_;
+};
 
 [[noreturn]] void refuse(const char* key) {
     fail(Status::BadFile, "'", key, "' makes no sense");
@@ -202,38 +190,56 @@ Texture texture_of(const Value& words, const char* key, GltfPictureReader& pictu
     return out;
 }
 
-void add(const Value& words, GltfPictureReader& pictures, Material& material, int depth) {
-    for (const NumberWord& word : kNumbers) {
-        if (words.Has(word.key))
-            material.*word.field = number_in(words.Get(word.key), word.key, word.low, word.high);
+/// Adds the fields that the words of a file have.
+class MaterialAddition {
+public:
+    MaterialAddition(const Value& words, GltfPictureReader& pictures, int depth = 0)
+        : words_(words), pictures_(pictures), depth_(depth) {}
+
+    void add_to(Material& material) const {
+        for_each_field([&](const auto& field) {
+            if (words_.Has(field.key))
+                read(field, words_.Get(field.key), material.*field.member);
+        });
     }
-    for (const auto& [key, field] : kColorFields) {
-        if (words.Has(key))
-            read_list(words.Get(key), key, 0, std::span<double, 3>(&(material.*field).x, 3));
+
+private:
+    static void read(const MaterialField<double>& field, const Value& value, double& number) {
+        number = number_in(value, field.key, field.believed.low, field.believed.high);
     }
-    for (const auto& [key, field] : kTextureFields) {
-        if (words.Has(key))
-            material.*field = texture_of(words.Get(key), key, pictures);
+    static void read(const MaterialField<glm::dvec3>& field, const Value& value,
+                     glm::dvec3& color) {
+        read_list(value, field.key, field.believed.low, std::span<double, 3>(&color.x, 3));
     }
-    if (words.Has("vertex_colors"))
-        material.vertex_colors = truth(words.Get("vertex_colors"), "vertex_colors");
-    if (words.Has("alpha_mode"))
-        material.alpha_mode = choice(words.Get("alpha_mode"), "alpha_mode", AlphaMode::Clip);
-    if (words.Has("other")) {
-        if (depth >= kMostMixtures)
-            refuse("other");
+    void read(const MaterialField<Texture>& field, const Value& value, Texture& texture) const {
+        texture = texture_of(value, field.key, pictures_);
+    }
+    static void read(const MaterialField<bool>& field, const Value& value, bool& out) {
+        out = truth(value, field.key);
+    }
+    static void read(const MaterialField<AlphaMode>& field, const Value& value, AlphaMode& mode) {
+        mode = choice(value, field.key, AlphaMode::Clip);
+    }
+    void read(const MaterialField<std::shared_ptr<const Material>>& field, const Value& value,
+              std::shared_ptr<const Material>& out) const {
+        if (depth_ >= kMostMixtures)
+            refuse(field.key);
         auto other = std::make_shared<Material>();
-        add(words.Get("other"), pictures, *other, depth + 1);
-        other->name = string_of(member(words.Get("other"), "name"));
-        material.other = std::move(other);
+        MaterialAddition(value, pictures_, depth_ + 1).add_to(*other);
+        other->name = string_of(member(value, "name"));
+        out = std::move(other);
     }
-}
+
+    const Value& words_;
+    GltfPictureReader& pictures_;
+    int depth_;
+};
 
 }  // namespace
 
 Value extras_of_material(const Material& material, const Material& seen,
                          GltfPictureWriter& pictures) {
-    Value::Object words = difference(material, seen, pictures, 0);
+    Value::Object words = MaterialDifference(material, seen, pictures).words();
     if (words.empty())
         return {};
     words["of"] = Value(hex16(hash_of(seen)));
@@ -245,7 +251,7 @@ bool apply_material_extras(const Value& words, GltfPictureReader& pictures, Mate
         return false;
     try {
         Material whole = seen;
-        add(words, pictures, whole, 0);
+        MaterialAddition(words, pictures).add_to(whole);
         seen = std::move(whole);
         return true;
     } catch (const Error&) {

@@ -69,24 +69,20 @@ public:
 private:
     static bool read_number(std::string_view word, std::string_view line, MaterialDraft& draft) {
         Material& m = draft.material;
-        const auto share = [&line](double& value) {
+        for (const MtlShare& share : kMtlShares) {
+            if (word != share.word)
+                continue;
+            double& value = m.*share.member;
             read_values(line, &value, 1);
             value = std::clamp(value, 0.0, 1.0);
-        };
+            return true;
+        }
         double number = 0;
         glm::dvec3 color(0.0);
         if (word == "Kd") {
             read_values(line, &m.base_color.x, 3);
         } else if (word == "Ke") {
             read_values(line, &m.emission.x, 3);
-        } else if (word == "Pr") {
-            share(m.roughness);
-        } else if (word == "Pm") {
-            share(m.metallic);
-        } else if (word == "Pc") {
-            share(m.clearcoat);
-        } else if (word == "Pcr") {
-            share(m.clearcoat_roughness);
         } else if (word == "d") {
             if (read_values(line, &number, 1))
                 draft.dissolve = std::clamp(number, 0.0, 1.0);

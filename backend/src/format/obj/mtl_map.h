@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MTL maps: "-option value ... file" <-> Texture.
+// MTL words: keywords <-> fields of Material, "-option value ... file" <-> Texture.
 #pragma once
 
-#include "model/texture.h"
+#include "model/material.h"
 
 #include <filesystem>
 #include <map>
@@ -14,6 +14,19 @@ namespace lodestone::format {
 
 /// MTL's -bm is a factor of no unit; 1 is taken as the largest dents of plaster or bark.
 inline constexpr double kBumpMetres = 0.01;
+
+/// A number 0...1 of a material and its keyword.
+struct MtlShare {
+    std::string_view word;
+    double Material::*member;
+    double Material::*needs;  // it is written where this is above 0; null: always
+};
+inline constexpr MtlShare kMtlShares[] = {
+    {"Pr", &Material::roughness, nullptr},
+    {"Pm", &Material::metallic, nullptr},
+    {"Pc", &Material::clearcoat, &Material::clearcoat},
+    {"Pcr", &Material::clearcoat_roughness, &Material::clearcoat},
+};
 
 /// A map line after its keyword.
 struct MapLine {

@@ -24,7 +24,7 @@ public:
     }
 
 private:
-    void number(const char* word, double value) {
+    void number(std::string_view word, double value) {
         out_.text += word;
         put_number(out_.text, value);
         out_.text += '\n';
@@ -44,11 +44,9 @@ private:
         const BakedTexture glow =
             drawn(m.emission_texture, ColorSpace::Srgb, TextureChannel::Color, true);
         color("Ke", glow.texture ? glm::dvec3(glow.limit) : m.emission);
-        number("Pr", m.roughness);
-        number("Pm", m.metallic);
-        if (m.clearcoat > 0) {
-            number("Pc", m.clearcoat);
-            number("Pcr", m.clearcoat_roughness);
+        for (const MtlShare& share : kMtlShares) {
+            if (share.needs == nullptr || m.*share.needs > 0)
+                number(share.word, m.*share.member);
         }
         map("map_Kd", base.texture);
         map("map_Ke", glow.texture);
