@@ -14,7 +14,7 @@ namespace lodestone {
 using ObjectIndex = uint32_t;
 inline constexpr ObjectIndex kNoObject = ~ObjectIndex{0};
 
-/// Bits of the ray classes (DESIGN: "ray class"): the camera's, and all that is seen through glass.
+/// Bits of the ray classes (docs/architecture.md, Words). The camera's counts behind glass, too.
 using RayMask = uint8_t;
 inline constexpr RayMask kCameraRays = 1;
 inline constexpr RayMask kReflectionRays = 2;

@@ -49,7 +49,7 @@ struct DrawCost {
 
 struct RepresentationSummary {
     Kind kind = Kind::Mesh;
-    double error = 0;      // metres, object's frame; 0 for the finest (DESIGN: "error")
+    double error = 0;      // metres, object's frame; 0 for the finest (docs/architecture.md, Words)
     double max_error = 0;  // the largest distance behind the error's quantile
     Bound bound;           // object's frame
     DrawCost cost;

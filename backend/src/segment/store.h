@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Store: a model on disk, a 3D Tiles 1.1 tileset folder (DESIGN 6).
+// Store: a model on disk, a 3D Tiles 1.1 tileset folder (docs/architecture.md, Store).
 //   tileset.json      the tiles for strangers, and in asset.extras.lodestone all we know, exactly
 //   r/<16 hex>.glb    one representation each, named by content hash
 //   i/<16 hex>.png    one picture each (or .jpg, .exr), likewise
