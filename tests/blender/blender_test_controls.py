@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Guards that whatever a designer can set or press has a tooltip, its choices too, and is explained
-in the add-on's README."""
+in the add-on's pages."""
 
 import unittest
 from pathlib import Path
@@ -9,7 +9,8 @@ import bpy
 
 import blender_scenes as scenes
 
-README = Path(__file__).resolve().parents[2] / "blender_addon" / "README.md"
+ADDON = Path(__file__).resolve().parents[2] / "blender_addon"
+PAGES = (ADDON / "README.md", *sorted((ADDON / "docs").glob("*.md")))
 # Buttons that are explained by what they stand beside, not by their own label
 BESIDE = {
     "ignore_problem": "is copied, or ignored",
@@ -102,8 +103,8 @@ class Controls(unittest.TestCase):
                 if one.identifier not in BLENDERS:
                     self._tells(f"{name}.{one.identifier}", one.description)
 
-    def test_the_readme_explains_every_control_and_every_button(self):
-        told = " ".join(README.read_text("utf-8").split())
+    def test_the_pages_explain_every_control_and_every_button(self):
+        told = " ".join(" ".join(page.read_text("utf-8") for page in PAGES).split())
         for where, one in controls().items():
             words = NAMED.get(one.identifier, one.name)
             self.assertTrue(words in told, (where, words))
