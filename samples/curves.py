@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Pixel Error buys on scenes made by others: triangles, memory, time and likeness over it.
 
-    /usr/bin/python3 samples/curves.py --data FOLDER [--out build/curves]
+    /usr/bin/python3 samples/curves.py --data FOLDER [--out build/curves] [--write]
 
 Renders the scenes of real_scenes.py at full detail and at Pixel Error 0.25 to 8 (Figure 5.10 of the
 dissertation); writes report.md and curves.svg. Shares are of full detail; bytes are the memory of
 POV-Ray that the export foretells, which small scenes do not lose among what an empty one takes.
+With --write the curves and the table go to samples/docs.
 """
 
 import argparse
@@ -53,6 +54,7 @@ def main() -> None:
     parser.add_argument("--data", type=Path, required=True, help="folder with scenes/ in it")
     parser.add_argument("--out", type=Path, default=Path("build/curves"))
     parser.add_argument("--size", default="640x360", metavar="WxH")
+    parser.add_argument("--write", action="store_true", help="also the page of results")
     options = parser.parse_args()
     out = options.out.resolve()
     blends = real_scenes.prepare(options.data.resolve(), out)
@@ -62,6 +64,9 @@ def main() -> None:
     text = real_scenes.table(found, options.size)
     (out / "report.md").write_text("# Real scenes over Pixel Error\n\n" + text, "utf-8")
     print(f"\n{text}\ncurves: {out / 'curves.svg'}\nreport: {out / 'report.md'}")
+    if options.write:
+        (real_scenes.HERE / "docs" / "curves.svg").write_text(drawn, "utf-8")
+        real_scenes.write_page("curves", "Real scenes over Pixel Error", text, found)
 
 
 if __name__ == "__main__":

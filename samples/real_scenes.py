@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renders scenes made by others at full detail and at Pixel Error 1, and compares.
 
-    /usr/bin/python3 samples/real_scenes.py --data FOLDER [--out build/real_scenes]
+    /usr/bin/python3 samples/real_scenes.py --data FOLDER [--out build/real_scenes] [--write]
 
 FOLDER holds scenes/ as listed below: .blend files, and glTF files that Blender imports (with
 python3-numpy). Each becomes a .blend under --out, with a camera and a light where it has none; all
-of them go through batch.py in one call. Writes report.md and prints its table.
+of them go through batch.py in one call. Writes report.md and prints its table; with --write also
+samples/docs/results/real_scenes.md.
 """
 
 import argparse
@@ -111,12 +112,29 @@ def table(found: dict[str, dict[float, dict]], size: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def write_page(name: str, title: str, text: str, found: dict[str, dict[float, dict]]) -> None:
+    """The page of samples/docs/results that shows these pictures' table."""
+    sys.path.insert(0, str(HERE.parent / "tests" / "bench"))
+    from benching import write_results
+
+    measured = {
+        scene: {
+            f"{pixel_error:g}": {part: made[part] for part in ("cut", "export", "povray")}
+            for pixel_error, made in pictures.items()
+        }
+        for scene, pictures in found.items()
+    }
+    lines = text.splitlines()
+    write_results(HERE / "docs" / "results" / name, title, lines, {"scenes": measured})
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--data", type=Path, required=True, help="folder with scenes/ in it")
     parser.add_argument("--out", type=Path, default=HERE.parent / "build/real_scenes")
     parser.add_argument("--size", default="640x360", metavar="WxH")
     parser.add_argument("--prepare-only", action="store_true", help="only make the .blend files")
+    parser.add_argument("--write", action="store_true", help="also the page of results")
     options = parser.parse_args()
     out = options.out.resolve()
     blends = prepare(options.data.resolve(), out)
@@ -124,9 +142,12 @@ def main() -> None:
         print(blend)
     if options.prepare_only:
         return
-    text = table(render(blends, out, options.size, PIXEL_ERRORS), options.size)
+    found = render(blends, out, options.size, PIXEL_ERRORS)
+    text = table(found, options.size)
     (out / "report.md").write_text("# Real scenes\n\n" + text, "utf-8")
     print("\n" + text + f"\nreport: {out / 'report.md'}")
+    if options.write:
+        write_page("real_scenes", "Real scenes", text, found)
 
 
 if __name__ == "__main__":

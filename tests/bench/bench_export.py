@@ -2,6 +2,7 @@
 """What exporting costs beside the POV-Ray add-on that Blender brings, on the stress scenes.
 
     /usr/bin/python3 tests/bench/bench_export.py [--scenes S1 S2 S3] [--rounds 5] [--small]
+        [--write]
 
 S1 is one smooth mesh of 500,002 triangles, S2 2,000 copies of one tree, S3 3,001 different meshes
 of 3,448,392 triangles. make_scenes.py of $LODESTONE_TOOLS/peer_povray makes them in build/bench
@@ -134,6 +135,7 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--small", action="store_true", help="S1 and S2 only, two rounds")
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "bench")
     parser.add_argument("--json", type=Path, default=None)
+    benching.add_write(parser, "povray_export")
     options = parser.parse_args(arguments)
     if options.small:
         options.scenes, options.rounds = ["S1", "S2"], 2
@@ -155,8 +157,9 @@ def main() -> None:
         print("bench_export.py: nothing to measure, skipped")
         return
     found = {name: summary(one) for name, one in rounds.items()}
-    print(f"\n{benching.said(options.rounds, busy)}\n")
-    print("\n".join(table(found)))
+    told = benching.Told()
+    told.tell(f"{benching.said(options.rounds, busy)}\n")
+    told.tell("\n".join(table(found)))
     data = {
         "input": sorted(rounds),
         "goals": {"ratio": GOAL_RATIO, "per_million": GOAL_PER_MILLION},
@@ -164,6 +167,8 @@ def main() -> None:
         "summary": found,
     }
     benching.write(options.json, busy, data)
+    page = benching.results_path(options, "export")
+    benching.write_results(page, "What an export costs", told, {"load_before": busy, **data})
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How long the first F12 of a scene takes, and the next ones, beside a picture of full detail.
 
-    /usr/bin/python3 tests/bench/bench_first_picture.py [FILE.blend ...] [--rounds 5]
+    /usr/bin/python3 tests/bench/bench_first_picture.py [FILE.blend ...] [--rounds 5] [--write]
 
 Without files: build/samples/street.blend, which samples/quickstart.sh makes. Every round opens the
 file in a Blender of its own, with no levels, and counts what both programs take from F12 to the
@@ -117,6 +117,7 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--pictures", nargs="+", choices=[*PICTURES], default=[*PICTURES])
     parser.add_argument("--whole", type=int, help="rounds; default: all")
     parser.add_argument("--json", type=Path, default=ROOT / "build" / "bench" / "first.json")
+    benching.add_write(parser, "backend")
     options = parser.parse_args(arguments)
     if options.rounds < 1:
         parser.error("--rounds is at least 1")
@@ -133,6 +134,7 @@ def main() -> None:
         sys.exit("bench_first_picture.py: build first (cmake --build --preset release)")
     busy = benching.load()
     results = {}
+    told = benching.Told()
     for blend in options.blend:
         if not blend.is_file():
             sys.exit(f"bench_first_picture.py: there is no {blend}; samples/quickstart.sh makes it")
@@ -143,9 +145,12 @@ def main() -> None:
             took = ", ".join(f"{p} {found[-1][p]['cpu_s']:.1f}" for p in pictures)
             print(f"{blend.stem} {number}: CPU s: {took}", flush=True)
         results[blend.stem] = {"rounds": found, "summary": summary(found)}
-        print(f"\n{blend.stem}: {benching.said(options.rounds, busy)}\n")
-        print("\n".join(table(results[blend.stem]["summary"])))
-    benching.write(options.json, busy, {"input": sorted(results), "scenes": results})
+        told.tell(f"\n{blend.stem}: {benching.said(options.rounds, busy)}\n")
+        told.tell("\n".join(table(results[blend.stem]["summary"])))
+    data = {"input": sorted(results), "scenes": results}
+    benching.write(options.json, busy, data)
+    page = benching.results_path(options, "first_picture")
+    benching.write_results(page, "What a build costs", told, {"load_before": busy, **data})
 
 
 if __name__ == "__main__":

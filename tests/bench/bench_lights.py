@@ -2,6 +2,7 @@
 """What approximating 400 lamps saves POV-Ray, and what it changes.
 
     /usr/bin/python3 tests/bench/bench_lights.py [--scenes house corridor market] [--rounds 5]
+        [--write]
 
 Each scene of light_scenes.py is drawn with all lamps and with approximated ones, in turns. The
 differences are to a picture with all lamps and 16 samples in every pixel, which is made once.
@@ -162,6 +163,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--size", type=int, nargs=2, default=[320, 180], metavar=("W", "H"))
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "bench" / "lights")
+    benching.add_write(parser, "povray_export")
     options = parser.parse_args()
     addon = STAGE / "addons" / "lodestone"
     if not addon.is_dir():
@@ -174,9 +176,13 @@ def main() -> None:
         name: run_scene(native, name, options.rounds, options.size, options.folder)
         for name in options.scenes
     }
-    print(f"\n{options.size[0]} x {options.size[1]}; {benching.said(options.rounds, busy)}\n")
-    print("\n".join(table(found)))
-    benching.write(options.folder / "lights.json", busy, {"size": options.size, "scenes": found})
+    told = benching.Told()
+    told.tell(f"{options.size[0]} x {options.size[1]}; {benching.said(options.rounds, busy)}\n")
+    told.tell("\n".join(table(found)))
+    data = {"size": options.size, "scenes": found}
+    benching.write(options.folder / "lights.json", busy, data)
+    page = benching.results_path(options, "lights")
+    benching.write_results(page, "Many lamps", told, {"load_before": busy, **data})
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 """What a kit-bashed city in one mesh costs POV-Ray, as one object and with its loose parts as many.
 
     /usr/bin/python3 tests/bench/bench_loose.py [--side 32] [--rounds 5] [--pictures FOLDER]
+        [--write]
 
 The city has SIDE x SIDE plots with buildings of some parts each. Each way its levels are built,
 then pictures are made from a street, above the roofs and from outside, in full and approximated, in
@@ -67,6 +68,7 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
         "--pictures", type=Path, help="folder to keep the first round's pictures in"
     )
     parser.add_argument("--json", type=Path, default=ROOT / "build" / "bench" / "loose.json")
+    benching.add_write(parser, "backend")
     return parser.parse_args(arguments)
 
 
@@ -122,21 +124,30 @@ def main() -> None:
                 options.pictures.mkdir(parents=True, exist_ok=True)
                 for file in (folder / way).glob("0_*.png"):
                     shutil.copy(file, options.pictures / f"{way}_{file.name}")
-    print_table(found, options, busy)
-    benching.write(options.json, busy, {"side": options.side, "ways": found})
+    told = print_table(found, options, busy)
+    data = {"side": options.side, "ways": found}
+    benching.write(options.json, busy, data)
+    page = benching.results_path(options, "loose")
+    title = "Loose parts of a mesh as objects"
+    benching.write_results(page, title, told, {"load_before": busy, **data})
 
 
-def print_table(found: dict, options: argparse.Namespace, busy: float) -> None:
+def print_table(found: dict, options: argparse.Namespace, busy: float) -> benching.Told:
+    told = benching.Told()
     model = found["one"]["model"]
-    print(
-        f"\n{options.side} x {options.side} plots, {model['triangles_placed']:,} triangles in one "
+    told.tell(
+        f"{options.side} x {options.side} plots, {model['triangles_placed']:,} triangles in one "
         f"mesh; Pixel Error {options.pixel_error:g}; {benching.said(options.rounds, busy)}\n"
     )
     for way, one in found.items():
-        print(f"levels, {way}: {one['build']['cpu_s']:.1f} CPU s, {one['build']['built']} built")
-    print("\n| view | loose parts | triangles | drawn by | scene, MB | memory, MB | parse, CPU s "
-          "| trace, CPU s | SSIM |")  # fmt: skip
-    print("|---|---|---|---|---|---|---|---|---|")
+        told.tell(
+            f"levels, {way}: {one['build']['cpu_s']:.1f} CPU s, {one['build']['built']} built"
+        )
+    told.tell(
+        "\n| view | loose parts | triangles | drawn by | scene, MB | memory, MB | parse, CPU s "
+        "| trace, CPU s | SSIM |"
+    )
+    told.tell("|---|---|---|---|---|---|---|---|---|")
     for camera in CAMERAS:
         for way, kind in ((WAYS[0], "full"), (WAYS[1], "full"), (WAYS[0], "cut"), (WAYS[1], "cut")):
             rounds = found[way]["pictures"][f"{camera} {kind}"]
@@ -151,10 +162,11 @@ def print_table(found: dict, options: argparse.Namespace, busy: float) -> None:
             first = rounds[0]
             drawn = sum(first["kinds"].values())
             label = "full detail" if kind == "full" else f"{options.pixel_error:g} px"
-            print(
+            told.tell(
                 f"| {camera}, {label} | {way} | {first['triangles']:,} | {drawn} "
                 f"| {first['scene_bytes'] / 1e6:.1f} | {' | '.join(cells)} | {first['ssim']:.4f} |"
             )
+    return told
 
 
 if __name__ == "__main__":

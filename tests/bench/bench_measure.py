@@ -2,6 +2,7 @@
 """What measuring costs beside the probe it has to beat, in one run.
 
     /usr/bin/python3 tests/bench/bench_measure.py [--seeds 100] [--rounds 5] [--json FILE]
+        [--write]
 
 Builds `bench_measure` in build/release and the probes of LODESTONE_TOOLS (default ../shared/tools)
 under build/tools, writes the 20 reference shapes as PLY and prints tables with the goals beside the
@@ -17,6 +18,8 @@ import statistics
 import subprocess
 import sys
 from pathlib import Path
+
+import benching
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("LODESTONE_TOOLS") or ROOT.parent / "shared" / "tools")
@@ -78,7 +81,7 @@ def measured_shapes(seeds: int) -> dict | None:
     return {"ours": ours, "probe": found}
 
 
-def print_shapes(found: dict) -> dict:
+def print_shapes(found: dict, told: benching.Told) -> dict:
     ours, probe = found["ours"], found["probe"]
     rows = []
     for one in ours:
@@ -110,8 +113,8 @@ def print_shapes(found: dict) -> dict:
         + [f"{statistics.mean(one['coverage'] for one in peers):.1f} %"]
     )
     head = ["shape", "by", "rays", "CPU ms", "within 1 %", "probe: rays", "CPU ms", "within 1 %"]
-    print(table(head, rows))
-    print(
+    told.tell(table(head, rows))
+    told.tell(
         f"\nGoals: rays <= {total['probe_rays']:.0f} (now {total['rays']:.0f}), CPU <= "
         f"{total['probe_cpu_ms']:.2f} ms (now {total['cpu_ms']:.2f}), pooled coverage >= 93 % "
         f"(now {100 * total['coverage']:.1f}), least >= 88 % (now "
@@ -120,7 +123,7 @@ def print_shapes(found: dict) -> dict:
     return total
 
 
-def print_closest(rounds: int) -> list[dict]:
+def print_closest(rounds: int, told: benching.Told) -> list[dict]:
     files = [OUT / "shapes" / f"{name}.ply" for name in ("sphere", "tree", "book", "bookshelf")]
     files += [DATA / "models" / f"{name}.ply" for name in ("fandisk", "bunny", "skull")]
     found = lines_of("closest", *(str(path) for path in files if path.is_file()), str(rounds))
@@ -130,9 +133,9 @@ def print_closest(rounds: int) -> list[dict]:
         for one in found
     ]
     head = ["mesh", "triangles", "tree ms", "M closest points / s / core", "with a hint"]
-    print(table(head, rows))
+    told.tell(table(head, rows))
     least = min((one["hinted"][1] for one in found), default=0)
-    print(
+    told.tell(
         "\nPoints up to 1 % of the radius off the surface, in its order; the hint is the triangle "
         "of the one before, as for errors. Least, median and best of "
         f"{rounds}. Goal: >= 0.4 (slowest median {least:.2f}).\n"
@@ -140,7 +143,7 @@ def print_closest(rounds: int) -> list[dict]:
     return found
 
 
-def print_errors(seeds: int) -> list[dict]:
+def print_errors(seeds: int, told: benching.Told) -> list[dict]:
     """Of levels that the command makes here."""
     command = BUILD / "lodestone"
     if not command.is_file() or not (DATA / "models").is_dir():
@@ -170,9 +173,9 @@ def print_errors(seeds: int) -> list[dict]:
         for one in found
     ]
     head = ["level", "samples", "99.9 % quantile", "max", "deviation", "range", "CPU ms"]
-    print(table(head, rows))
+    told.tell(table(head, rows))
     worst = max((one["deviation"] for one in found if one["samples"] == 8192), default=0)
-    print(f"\n{seeds} seeds. Goal: <= 2 % (worst with 8192 samples: {100 * worst:.2f} %).")
+    told.tell(f"\n{seeds} seeds. Goal: <= 2 % (worst with 8192 samples: {100 * worst:.2f} %).")
     return found
 
 
@@ -181,19 +184,23 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, default=100)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--json", type=Path, default=ROOT / "build" / "bench" / "measure.json")
+    benching.add_write(parser, "backend")
     arguments = parser.parse_args()
     words = ["cmake", "--build", str(BUILD), "--target", "bench_measure"]
     if subprocess.run(words, capture_output=True).returncode != 0:
         print("`cmake --preset release` first: bench_measure cannot be built.", file=sys.stderr)
         return 1
-    report: dict = {}
+    report: dict = {"load_before": benching.load()}
+    told = benching.Told()
     shapes = measured_shapes(arguments.seeds)
     if shapes is not None:
-        report["shapes"] = {**shapes, "mean": print_shapes(shapes)}
-    report["closest"] = print_closest(arguments.rounds)
-    report["errors"] = print_errors(10)
+        report["shapes"] = {**shapes, "mean": print_shapes(shapes, told)}
+    report["closest"] = print_closest(arguments.rounds, told)
+    report["errors"] = print_errors(10, told)
     arguments.json.parent.mkdir(parents=True, exist_ok=True)
     arguments.json.write_text(json.dumps(report, indent=1))
+    page = benching.results_path(arguments, "measure")
+    benching.write_results(page, "Measuring", told, report)
     return 0
 
 

@@ -3,6 +3,7 @@
 change, and the same for many lamps drawn as few.
 
     /usr/bin/python3 tests/bench/bench_rays.py [--scenes mirror contact] [--rounds 5] [--png OUT]
+        [--write]
 
 Each scene of ray_scenes.py is drawn with one detail for all rays (off) and with each class's own
 (on), in turns; with one class alone, and at twice the Pixel Error, once. Differences are of covered
@@ -236,6 +237,7 @@ def main() -> None:
     parser.add_argument("--size", type=int, nargs=2, default=[240, 135], metavar=("W", "H"))
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "bench" / "rays")
     parser.add_argument("--png", type=Path, help="the sheet of pictures")
+    benching.add_write(parser, "povray_export")
     options = parser.parse_args()
     addon = STAGE / "addons" / "lodestone"
     if not addon.is_dir():
@@ -252,9 +254,14 @@ def main() -> None:
         benches.append(bench)
         found[bench.scene.name] = bench.run(options.rounds)
         print(f"{name} done", file=sys.stderr)
-    print(f"\n{options.size[0]} x {options.size[1]}; {benching.said(options.rounds, busy)}\n")
-    print("\n".join(table(found)))
-    benching.write(options.folder / "rays.json", busy, {"size": options.size, "scenes": found})
+    told = benching.Told()
+    told.tell(f"{options.size[0]} x {options.size[1]}; {benching.said(options.rounds, busy)}\n")
+    told.tell("\n".join(table(found)))
+    data = {"size": options.size, "scenes": found}
+    benching.write(options.folder / "rays.json", busy, data)
+    title = "Seven scenes with coarser shadows and reflections"
+    page = benching.results_path(options, "rays")
+    benching.write_results(page, title, told, {"load_before": busy, **data})
     if options.png:
         sheet(native, benches, options.png)
 

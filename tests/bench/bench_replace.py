@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How alike outlines of the 20 reference shapes, and a cube, are to those of their replacements.
 
-    /usr/bin/python3 tests/bench/bench_replace.py [--build build/release]
+    /usr/bin/python3 tests/bench/bench_replace.py [--build build/release] [--write]
 
 The shapes come from LODESTONE_TOOLS/reference_shapes (default ../shared/tools), and are skipped
 with a sentence without it. Intersection over union of silhouettes, mean of 20 views; 0 where there
@@ -21,6 +21,8 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+import benching
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOLS = Path(os.environ.get("LODESTONE_TOOLS") or ROOT.parent / "shared" / "tools")
@@ -162,6 +164,7 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, default=ROOT / "build" / "release")
     parser.add_argument("--json", type=Path, default=ROOT / "build" / "bench" / "replace.json")
+    benching.add_write(parser, "backend")
     return parser.parse_args(arguments)
 
 
@@ -180,17 +183,21 @@ def main() -> None:
         files = sorted(str(path) for path in (folder / "shapes").glob("*.ply"))
         done = subprocess.run([str(program), *files], stdout=subprocess.PIPE, check=True)
     shapes = json.loads(done.stdout)
-    print("\n".join(overlap_table(shapes)))
+    outlines, kept = benching.Told(), benching.Told()
+    outlines.tell("\n".join(overlap_table(shapes)))
     reached = mean_of(shapes, "ours, by error")
-    print(f"\nGoal: ours >= {GOAL}; it is {reached:.3f}.\n")
-    print("\n".join(cost_table(shapes)))
-    print()
-    print("\n".join(attributes_table(shapes)))
-    print("\nColor and brightness found again by 16 times the rays, in 255ths; goal: 2.\n")
-    print("\n".join(rematched_table(shapes)))
+    outlines.tell(f"\nGoal: ours >= {GOAL}; it is {reached:.3f}.\n")
+    outlines.tell("\n".join(cost_table(shapes)) + "\n")
+    kept.tell("\n".join(attributes_table(shapes)))
+    kept.tell("\nColor and brightness found again by 16 times the rays, in 255ths; goal: 2.\n")
+    kept.tell("\n".join(rematched_table(shapes)))
     options.json.parent.mkdir(parents=True, exist_ok=True)
     data = {"schema": 1, "verb": "bench", "goal": GOAL, "reached": reached, "shapes": shapes}
     options.json.write_text(json.dumps(data, indent=1) + "\n", "utf-8")
+    page = benching.results_path(options, "silhouettes")
+    benching.write_results(page, "Silhouettes of stand-ins", outlines, data)
+    page = benching.results_path(options, "matched_attributes")
+    benching.write_results(page, "What stand-ins keep, measured again", kept, data)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 """How Lodestone's simplification compares with its peers, in one run, on the shared models.
 
     /usr/bin/python3 tests/bench/bench_simplify.py [--rounds 5] [--models skull ...] [--small]
+        [--write]
 
 Blender's Decimate, Debian's meshoptimizer (with simplifySloppy), CGAL, OpenMesh and `lodestone
 simplify --mode best | fast | cluster` all get the same position-welded mesh without texture
@@ -384,6 +385,7 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument("--folder", type=Path, default=ROOT / "build" / "bench")
     parser.add_argument("--json", type=Path, default=None)
+    benching.add_write(parser, "backend")
     options = parser.parse_args(arguments)
     options.targets = TARGETS
     if options.small:
@@ -422,17 +424,18 @@ def main() -> None:
     bench.measure(sources)
     stems = {source.stem.removesuffix("_uv") for source in sources}
     found = {key: one for key, one in bench.found.items() if key[1] in stems}
-    print(
-        f"\nBlender = 1; {len(sources)} models; CPU of {options.rounds} rounds; {os.cpu_count()} "
+    told = benching.Told()
+    told.tell(
+        f"Blender = 1; {len(sources)} models; CPU of {options.rounds} rounds; {os.cpu_count()} "
         f"cores, load {busy:.1f} before the first\n"
     )
-    print("\n".join(table(found)), end="\n\n")
-    print("\n".join(target_table(found, options.targets)), end="\n\n")
-    print(sloppy_sentence(found), end="\n\n")
+    told.tell("\n".join(table(found)) + "\n")
+    told.tell("\n".join(target_table(found, options.targets)) + "\n")
+    told.tell(sloppy_sentence(found) + "\n")
     mesh = bench.out / f"{MILLION}.ply"
     ones = million(mesh, options.rounds) if mesh.is_file() and not options.small else []
     if ones:
-        print("\n".join(million_table(ones)))
+        told.tell("\n".join(million_table(ones)))
     data = {
         "input": [str(source) for source in sources],
         "goals": {**GOALS, "cluster_beside_sloppy": SLOPPY_GOALS, "million": MILLION_GOALS},
@@ -442,6 +445,9 @@ def main() -> None:
         ],
     }
     benching.write(options.json, busy, data)
+    title = "Simplification beside its peers"
+    page = benching.results_path(options, "simplify")
+    benching.write_results(page, title, told, {"load_before": busy, **data})
 
 
 if __name__ == "__main__":

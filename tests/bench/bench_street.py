@@ -117,6 +117,7 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--pixel-error", type=float, default=1.0)
     parser.add_argument("--size", type=int, nargs=2, default=[640, 360], metavar=("W", "H"))
     parser.add_argument("--json", type=Path, default=ROOT / "build" / "bench" / "street.json")
+    benching.add_write(parser, "samples")
     options = parser.parse_args(arguments)
     if options.rounds < 1 or not options.pixel_error > 0:
         parser.error("--rounds is at least 1, --pixel-error above 0")
@@ -138,11 +139,12 @@ def main() -> None:
         batch = render(options.blend.resolve(), options.store.resolve(), views, folder)
     rounds = measured(batch["pictures"], empty)
     found = summary(rounds)
-    print(
-        f"\nCamera {options.camera}, {options.size[0]} x {options.size[1]}, Pixel Error "
+    told = benching.Told()
+    told.tell(
+        f"Camera {options.camera}, {options.size[0]} x {options.size[1]}, Pixel Error "
         f"{options.pixel_error:g}; {benching.said(len(rounds), busy)}\n"
     )
-    print("\n".join(table(found)))
+    told.tell("\n".join(table(found)))
     data = {
         "input": str(options.blend),
         "camera": options.camera,
@@ -154,6 +156,9 @@ def main() -> None:
         "summary": found,
     }
     benching.write(options.json, busy, data)
+    title = f"The street, the spread of {len(rounds)} rounds"
+    page = benching.results_path(options, "spread")
+    benching.write_results(page, title, told, {"load_before": busy, **data})
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 
 /usr/bin/python3 tests/bench/bench_viewport.py [--scene build/samples/street.blend] [--rounds 5]
     [--camera near] [--stage build/release/stage] [--json build/bench/viewport.json]
-    [--pictures DIR]
+    [--pictures DIR] [--write]
 
 The scene's levels must be built beside it (batch.py build). Needs Xvfb, and OpenGL in software.
 Each way of drawing (levels, Solid, Material Preview; overlays off, and levels and Solid with them)
@@ -38,6 +38,7 @@ def options():
     parser.add_argument("--camera", default="near")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--kinds", nargs="+", default=KINDS, choices=KINDS)
+    benching.add_write(parser, "blender_addon")
     return parser.parse_args()
 
 
@@ -76,13 +77,14 @@ def main():
         for _, kind in benching.turns(asked.rounds, asked.kinds):
             found[kind].append(one(asked, kind, Path(name)))
             print(kind, found[kind][-1], flush=True)
-    print(benching.said(asked.rounds, busy))
-    print(f"\n| | {' | '.join(words for _, _, words in UNITS)} |\n|---|{'---|' * len(UNITS)}")
+    told = benching.Told()
+    told.tell(benching.said(asked.rounds, busy))
+    told.tell(f"\n| | {' | '.join(words for _, _, words in UNITS)} |\n|---|{'---|' * len(UNITS)}")
     table = {}
     for kind, rows in found.items():
         table[kind] = {key: benching.spread([row[key] for row in rows]) for key, _, _ in UNITS}
         cells = [benching.cell(table[kind][key], unit, 1) for key, unit, _ in UNITS]
-        print(f"| {kind} | {' | '.join(cells)} |")
+        told.tell(f"| {kind} | {' | '.join(cells)} |")
     ratios = {}
     for kind in table:
         peer = "solid overlays" if "overlays" in kind else "solid"
@@ -95,8 +97,11 @@ def main():
             f"{key} {ratio:.2f} (goal for levels {GOALS[key]})"
             for key, ratio in ratios[kind].items()
         )
-        print(f"{kind}, of {peer}: {shown}")
-    benching.write(asked.json, busy, {"rounds": found, "ratios": ratios})
+        told.tell(f"\n{kind}, of {peer}: {shown}")
+    data = {"rounds": found, "ratios": ratios}
+    benching.write(asked.json, busy, data)
+    page = benching.results_path(asked, "viewport")
+    benching.write_results(page, "A redraw of the viewport", told, {"load_before": busy, **data})
 
 
 if __name__ == "__main__":

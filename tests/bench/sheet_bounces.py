@@ -3,7 +3,7 @@
 
     BLENDER_USER_SCRIPTS=build/release/stage blender -b --factory-startup \\
         --python tests/bench/sheet_bounces.py -- [--bounces 3] [--scenes cornell room street]
-        [--size 320 180] [--samples 256] [--errors 1] [--png OUT]
+        [--size 320 180] [--samples 256] [--errors 1] [--png OUT] [--write]
 
 A Cornell box, a room behind a window (sun and sky), a street. From left to right: Cycles, Lodestone
 with direct light alone, with bounces, four times the difference of the latter to Cycles.
@@ -20,6 +20,8 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blender"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import benching  # noqa: E402
 import blender_scenes as scenes  # noqa: E402
 
 SHOWN = 4
@@ -191,13 +193,14 @@ def main():
     parser.add_argument("--samples", type=int, default=256)
     parser.add_argument("--errors", type=float, nargs="+", default=[1.0], help="Pixel Errors")
     parser.add_argument("--png", type=Path)
+    benching.add_write(parser, "povray_export")
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
     sheet = []
-    print(
-        "| scene | bounces | Pixel Error | direct: mean | with: mean, brighter by | s: Cycles, ",
-        end="",
+    told, busy = benching.Told(), benching.load()
+    told.tell(
+        "| scene | bounces | Pixel Error | direct: mean | with: mean, brighter by "
+        "| s: Cycles, direct, with |\n|" + "---|" * 6
     )
-    print("direct, with |\n|" + "---|" * 6)
     for name in options.scenes:
         with tempfile.TemporaryDirectory() as made:
             folder = Path(made)
@@ -222,11 +225,10 @@ def main():
                     direct, direct_s = render(scene, "LODESTONE_POVRAY", folder)
                     settings.own_bounces = bounces
                     ours, ours_s = render(scene, "LODESTONE_POVRAY", folder)
-                    print(
+                    told.tell(
                         f"| {name} | {bounces} | {error:g} | {mean(direct, theirs):.1f} | "
                         f"{mean(ours, theirs):.1f}, {mean(ours, theirs, float):+.1f} | "
-                        f"{cycles_s:.1f}, {direct_s:.1f}, {ours_s:.1f} |",
-                        flush=True,
+                        f"{cycles_s:.1f}, {direct_s:.1f}, {ours_s:.1f} |"
                     )
                     off = [
                         [min(1.0, SHOWN * abs(a - b)) for a, b in zip(row, other)]
@@ -237,6 +239,9 @@ def main():
                         row = [value for part in parts for value in (*part, *gap)]
                         sheet.append(row[: -len(gap)])
                     sheet += [[1.0] * len(sheet[-1])] * MARGIN
+    page = benching.results_path(options, "bounces")
+    data = {"load_before": busy, "lines": list(told)}
+    benching.write_results(page, "Indirect light beside Cycles", told, data)
     if options.png:
         from lodestone.core.native import lodestone_native as native
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of what controls do that no panel shows, with their numbers, for the add-on's README.
+"""Pictures of what controls do that no panel shows, with their numbers, for the add-on's pages.
 
     BLENDER_USER_SCRIPTS=build/release/stage blender -b --factory-startup \\
         --python tests/bench/sheet_controls.py -- [--sheets moving depth deforming build] [--out F]
+        [--write]
 
 moving: a crowd of which some are carried past or stand in the dark, without and with Coarser When
 Moving or Dark. depth: false colors of rows of heads, without and with Depth Exaggeration.
@@ -21,6 +22,8 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blender"))
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import benching  # noqa: E402
 import blender_scenes as scenes  # noqa: E402
 
 MARGIN = 4
@@ -126,7 +129,7 @@ def write(lines, out):
     native.image_write_png(str(out), native.Image(len(rows[0]) // 3, len(rows), flat))
 
 
-def moving(folder, out):
+def moving(folder, out, results):
     """A lamp on the left, the dark on the right; the second row is carried past."""
     scene = started(folder, 400, 225)
     floor(scene, (0.3, 0.3, 0.3), (0.002, 0.002, 0.003))
@@ -161,11 +164,11 @@ def moving(folder, out):
         settings.coarser_moving_dark = on
         rows, _, told = render(scene)
         cells.append(rows)
-        print(f"moving {'on' if on else 'off'}: {told.triangles:,} triangles")
+        results.tell(f"- moving {'on' if on else 'off'}: {told.triangles:,} triangles")
     write([beside(cells)], out / "moving.png")
 
 
-def depth(folder, out):
+def depth(folder, out, results):
     """Rows of heads that go away from the camera, the second of them in focus."""
     scene = started(folder, 400, 225)
     source = head("head", COLORS[0])
@@ -186,11 +189,11 @@ def depth(folder, out):
         bpy.ops.lodestone.false_color_picture(seen_from="CAMERA", mode="LEVEL")
         cells.append(rows_of(bpy.data.images["Lodestone False Colors"]))
         _, _, told = render(scene)
-        print(f"depth {exaggeration:g}: {told.triangles:,} triangles")
+        results.tell(f"- depth {exaggeration:g}: {told.triangles:,} triangles")
     write([beside(cells)], out / "depth.png")
 
 
-def deforming(folder, out):
+def deforming(folder, out, results):
     """Frames 1, 9 and 17 of a flag, one line for each choice."""
     scene = started(folder, 240, 160)
     floor(scene)
@@ -230,11 +233,11 @@ def deforming(folder, out):
             cells.append(rows)
             said.append(f"{told.triangles:,} triangles, {took:.1f} CPU s")
         lines.append(beside(cells))
-        print(f"deforming {choice}: {'; '.join(said)}")
+        results.tell(f"- deforming {choice}: {'; '.join(said)}")
     write(lines, out / "deforming.png")
 
 
-def build(folder, out):
+def build(folder, out, results):
     """First and second picture, a line for each choice."""
     from lodestone.operators import false_color_picture
 
@@ -262,8 +265,8 @@ def build(folder, out):
             bpy.ops.lodestone.false_color_picture(mode="LEVEL")
             shown = bpy.data.images[false_color_picture.NAME]
             cells.append(rows_of(shown))
-            print(
-                f"build {choice}, {picture}: {took:.1f} CPU s, {told.triangles:,} triangles, "
+            results.tell(
+                f"- build {choice}, {picture}: {took:.1f} CPU s, {told.triangles:,} triangles, "
                 f"{told.without_levels} without levels"
             )
         lines.append(beside(cells))
@@ -277,13 +280,18 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sheets", nargs="+", default=list(SHEETS), choices=list(SHEETS))
     parser.add_argument("--out", type=Path, default=Path.cwd())
+    benching.add_write(parser, "blender_addon")
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
+    results, busy = benching.Told(), benching.load()
     for name in options.sheets:
         with tempfile.TemporaryDirectory() as made:
             folder = Path(made)
             for choice in ("NONE", "HELPFUL", "ALL"):
                 (folder / choice).mkdir()
-            SHEETS[name](folder, options.out)
+            SHEETS[name](folder, options.out, results)
+    page = benching.results_path(options, "controls")
+    data = {"load_before": busy, "lines": list(results)}
+    benching.write_results(page, "What controls change", results, data)
 
 
 if __name__ == "__main__":

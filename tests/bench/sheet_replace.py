@@ -2,6 +2,7 @@
 """Stand-ins beside what they stand for: twelve groups, 64, 32, 16, 8 and 4 pixels large.
 
     /usr/bin/python3 tests/bench/sheet_replace.py [--only tree,crowd] [--png OUT.png]
+        [--write]
 
 A group's longest side has so many pixels. Each picture, by POV-Ray, shows many copies of it beside
 each other, each turned in its own way and lying differently on the pixels. What is right is full
@@ -23,6 +24,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import benching
 import numpy
 from sheet_groups import GROUPS
 from sheet_materials import materials
@@ -252,9 +254,9 @@ def line_of(row: Row) -> str:
     )
 
 
-def verdict(rows: list[Row]) -> None:
-    print("\n| kind | picked | light, mean (worst) | / decimated | / plain full | |")
-    print("|---|---|---|---|---|---|")
+def verdict(rows: list[Row], told: benching.Told) -> None:
+    told.tell("\n| kind | picked | light, mean (worst) | / decimated | / plain full | |")
+    told.tell("|---|---|---|---|---|---|")
     for kind in sorted({row.main for row in rows} - {"original"}):
         own = [row for row in rows if row.main == kind]
         light = sum(row.light for row in own) / len(own)
@@ -264,7 +266,7 @@ def verdict(rows: list[Row]) -> None:
             for ours, theirs in (("picked", "decimated"), ("paid", "full"))
         ]
         good = abs(light - 1) <= MOST_OFF and all(ratio <= 1 for ratio in ratios)
-        print(
+        told.tell(
             f"| {kind} | {len(own)} | {light:.3f} ({worst:.3f}) | {ratios[0]:.3f} "
             f"| {ratios[1]:.3f} | {'holds' if good else 'does not hold'} |"
         )
@@ -297,18 +299,20 @@ def main() -> None:
     parser.add_argument("--only", default=",".join(GROUPS), help="names of groups, by commas")
     parser.add_argument("--build", type=Path, default=ROOT / "build" / "release")
     parser.add_argument("--stores", type=Path, help="kept from run to run")
+    benching.add_write(parser, "backend")
     options = parser.parse_args()
     sys.path.insert(0, str(options.build.resolve() / "stage" / "addons" / "lodestone"))
     import lodestone_native as native
 
     rows: list[Row] = []
+    told, busy = benching.Told(), benching.load()
     with tempfile.TemporaryDirectory() as name, ThreadPoolExecutor(2) as workers:
         folder = Path(name)
         stores = options.stores or folder / "stores"
         stores.mkdir(parents=True, exist_ok=True)
         (folder / "pictures").mkdir()
         sheet = Sheet(native, folder / "pictures", stores, workers)
-        print(
+        told.tell(
             "| group | px | picked | triangles | kB | light | picked | paid | decimated | full "
             "| CPU |\n|---|---|---|---|---|---|---|---|---|---|---|"
         )
@@ -318,14 +322,17 @@ def main() -> None:
             for row, jobs in waiting:
                 sheet.finish(row, jobs)
                 rows.append(row)
-                print(line_of(row), flush=True)
+                told.tell(line_of(row))
 
         for name in options.only.split(","):
             coming = sheet.rows_of(name)  # while those before are drawn
             tell()
             waiting = coming
         tell()
-        verdict(rows)
+        verdict(rows, told)
+        page = benching.results_path(options, "stand_ins")
+        data = {"load_before": busy, "lines": list(told)}
+        benching.write_results(page, "Stand-ins at 64 to 4 pixels", told, data)
         if options.png:
             draw(native, rows, options.png)
 
