@@ -2,27 +2,31 @@
 """Renders the street at full detail and approximated, and writes picture strips and a report.
 
 Run by samples/quickstart.sh with the system's Python:
-    compare.py --blend build/samples/street.blend --out build/samples [--all]
+    compare.py --blend build/samples/street.blend --out build/samples [--all [--write]]
 
 Everything is rendered in one batch job: one reading of the .blend, the levels built when they are
 stale, then for each camera a 16-sample reference, full detail and Pixel Error 0.5, 1, 2, 4 with the
 antialiasing of final pictures, the masks of covered pixels, and the false-colored picture.
+With --write the repository's pages show this run: the block of README.md that is between marks, its
+picture strip, and samples/docs/results/street.md.
 """
 
 import argparse
 import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-STAGE = Path(os.environ.get("LODESTONE_STAGE", HERE.parents[1] / "build/release/stage"))
+ROOT = HERE.parents[1]
+STAGE = Path(os.environ.get("LODESTONE_STAGE", ROOT / "build/release/stage"))
 ADDON = STAGE / "addons/lodestone"
 sys.path.insert(0, str(ADDON))
 
 import lodestone_native as native  # noqa: E402
-from report import write_report  # noqa: E402
+from report import strip_block, with_strip, write_report  # noqa: E402
 from strip import difference, make_strip  # noqa: E402
 
 PIXEL_ERRORS = (0.5, 1.0, 2.0, 4.0)
@@ -120,12 +124,29 @@ def write_strip(camera: str, folder: Path) -> Path:
     return path
 
 
+def write_pages(folder: Path) -> None:
+    """The pages of the repository that show what this run measured."""
+    sys.path.insert(0, str(ROOT / "tests" / "bench"))
+    from benching import write_results
+
+    report = json.loads((folder / "report.json").read_text("utf-8"))
+    readme = ROOT / "README.md"
+    readme.write_text(with_strip(readme.read_text("utf-8"), strip_block(report)), "utf-8")
+    shutil.copy(folder / "strip_far.png", HERE / "strip_far.png")
+    lines = (folder / "report.md").read_text("utf-8").splitlines()
+    table = [line for line in lines[2:] if not line.startswith("![")]
+    write_results(ROOT / "samples/docs/results/street", "The street", table, report)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--blend", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True, help="folder")
     parser.add_argument("--all", action="store_true", help="also the middle and near cameras")
+    parser.add_argument("--write", action="store_true", help="with --all: into the pages")
     options = parser.parse_args()
+    if options.write and not options.all:
+        parser.error("--write shows all cameras: it needs --all")
     folder = options.out.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     cameras = CAMERAS if options.all else CAMERAS[:1]
@@ -137,6 +158,8 @@ def main() -> None:
     for strip in strips:
         print(f"picture strip: {strip}")
     print(f"report: {report}")
+    if options.write:
+        write_pages(folder)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""report.md and report.json: what the pictures cost, what they differ by, what the levels paid."""
+"""report.md and report.json: what the pictures cost, what they differ by, what the levels paid; and
+the same of one camera, short, for the first page of the repository."""
 
 import json
 import math
 from pathlib import Path
+
+# The lines of README.md between these are written by strip_block.
+BEGIN, END = "<!-- strip:begin -->", "<!-- strip:end -->"
+STRIP_PICTURES = ("full", "0.5px", "1px", "4px")
 
 
 def _row(name: str, picture: dict, difference: dict, empty: int) -> dict:
@@ -61,6 +66,51 @@ def _verdict(rows: list[dict]) -> list[str]:
     return lines
 
 
+def _pictures_to_pay(rows: list[dict], build: dict) -> int | None:
+    """After how many pictures at Pixel Error 1 the levels have paid; None where they never do."""
+    one = next(row for row in rows if row["picture"] == "1px")
+    saved = _total(rows[0]) - _total(one)
+    return math.ceil(build["cpu_s"] / saved) if saved > 0 else None
+
+
+def strip_block(report: dict) -> str:
+    """The table below the picture strip of README.md, from what write_report wrote as JSON."""
+    cells = ["600 m street, far camera, 640 x 360", "triangles placed", "POV-Ray memory"]
+    cells += ["parse + trace", "SSIM (16-sample reference)"]
+    lines = [f"| {' | '.join(cells)} |", "|---|---|---|---|---|"]
+    rows = report["cameras"]["far"]
+    by_name = {row["picture"]: row for row in rows}
+    for name in STRIP_PICTURES:
+        row = by_name[name]
+        cells = [
+            "full detail" if name == "full" else f"Pixel Error {name.removesuffix('px')}",
+            f"{row['triangles']:,}",
+            f"{row['memory_bytes'] / 1e6:.0f} MB",
+            f"{row['parse_cpu_s']:.1f} + {row['trace_cpu_s']:.1f} CPU s",
+            f"{row['ssim']:.3f}",
+        ]
+        if name == "1px":
+            cells = [f"**{cell}**" for cell in cells]
+        lines.append(f"| {' | '.join(cells)} |")
+    lines += ["", "One run; memory is above that of an empty scene, SSIM on covered pixels."]
+    build, pictures = report["build"], _pictures_to_pay(rows, report["build"])
+    if build["built"] > 0:
+        lines[-1] += f" Building the levels took {build['cpu_s']:.0f} CPU s once"
+        lines[-1] += (
+            f": paid back\nafter {pictures} pictures from this camera." if pictures else "."
+        )
+    return "\n".join(lines)
+
+
+def with_strip(page: str, block: str) -> str:
+    """The page with the block between its two marks, which it must have once."""
+    before, begun, rest = page.partition(BEGIN)
+    _, ended, after = rest.partition(END)
+    if not begun or not ended or BEGIN in rest or END in before + after:
+        raise ValueError(f"the page needs {BEGIN} and {END} once, in this order")
+    return f"{before}{BEGIN}\n{block}\n{END}{after}"
+
+
 def write_report(folder: Path, batch: dict, differences: dict, empty: int) -> Path:
     """Writes both files; returns the path of report.md."""
     by_name = {Path(picture["picture"]).stem: picture for picture in batch["pictures"]}
@@ -80,15 +130,13 @@ def write_report(folder: Path, batch: dict, differences: dict, empty: int) -> Pa
     for camera, rows in cameras.items():
         lines += ["", f"## Camera {camera}", "", f"![strip](strip_{camera}.png)", ""]
         lines += _table(rows) + [""] + _verdict(rows)
-        one = next(row for row in rows if row["picture"] == "1px")
-        saved = _total(rows[0]) - _total(one)
+        pictures = _pictures_to_pay(rows, build)
         if build["built"] == 0:
             paid = "The levels were there already."
-        elif saved <= 0:
+        elif pictures is None:
             paid = "At Pixel Error 1 nothing is saved here."
         else:
-            count = math.ceil(build["cpu_s"] / saved)
-            paid = f"At Pixel Error 1 they have paid after {count} pictures from here."
+            paid = f"At Pixel Error 1 they have paid after {pictures} pictures from here."
         lines += [
             "",
             f"Building the levels: {build['built']:,} of {build['objects']:,} objects, "
