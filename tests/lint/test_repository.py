@@ -10,6 +10,7 @@ TOP_LEVEL = {
     "CMakeLists.txt",
     "CMakePresets.json",
     "README.md",
+    "CONTRIBUTING.md",
     "CHANGELOG.md",
     "LICENSE",
     "backend",
