@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs a bench that is a C++ program, and writes what it prints as a page of results.
+
+    /usr/bin/python3 tests/bench/bench_program.py cut [--write]
+    /usr/bin/python3 tests/bench/bench_program.py group [--write] [-- --flat 1000 STORE ...]
+
+Builds the program in build/release first; its source (bench_cut.cpp, bench_group.cpp) tells what it
+measures and what the words after -- are. No number makes it fail.
+"""
+
+import argparse
+import subprocess
+import sys
+
+import benching
+
+BUILD = benching.ROOT / "build" / "release"
+TITLES = {"cut": "Choosing", "group": "Grouping"}
+
+
+def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", choices=TITLES)
+    parser.add_argument("words", nargs="*", help="for the program")
+    benching.add_write(parser, "backend")
+    return parser.parse_args(arguments)
+
+
+def main() -> None:
+    options = options_of()
+    name = f"bench_{options.program}"
+    words = ["cmake", "--build", str(BUILD), "--target", name]
+    if subprocess.run(words, stdout=subprocess.DEVNULL, check=False).returncode != 0:
+        sys.exit(f"bench_program.py: {name} cannot be built; cmake --preset release first")
+    busy = benching.load()
+    told = benching.Told()
+    command = [str(BUILD / "tests" / name), *options.words]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as running:
+        for line in running.stdout or ():
+            told.tell(line.rstrip("\n"))
+    if running.returncode != 0:
+        sys.exit(f"bench_program.py: {name} ended with {running.returncode}")
+    page = benching.results_path(options, options.program)
+    data = {"load_before": busy, "lines": list(told)}
+    benching.write_results(page, TITLES[options.program], told, data)
+
+
+if __name__ == "__main__":
+    main()
