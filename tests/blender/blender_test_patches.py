@@ -3,7 +3,7 @@
 
 Both engines draw the same grid of squares and balls under one sun and a gray world. What is left
 per patch (root mean square of the display-encoded picture, in 255ths, without its border) is
-bounded by what was measured; povray_export/README.md lists it, blender_patches.py draws it.
+bounded by what was measured; povray_export/docs/results has it, blender_patches.py draws it.
 """
 
 import unittest

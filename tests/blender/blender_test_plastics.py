@@ -3,7 +3,7 @@
 
 Balls of four colors and three kinds of gloss, under a bright sky alone and under a dim one with a
 sun; metals, coats, paint and glow of the same kind. Bounds are what was measured, as
-povray_export/README.md lists it; blender_patches.py draws it.
+povray_export/docs/results has it; blender_patches.py draws it.
 """
 
 import unittest

@@ -169,7 +169,7 @@ class TreeOfLeaves(unittest.TestCase):
         # What a second of such rays would bring the mean square error down to.
         per_second = {name: off * seconds for name, (off, seconds) in found.items()}
         self.assertLess(per_second["stand-in"], per_second["1"] / 2)
-        # Nearly a draw, and hundredths of a second are noisy: README has the numbers.
+        # Nearly a draw, and hundredths of a second are noisy: backend/docs/results has them.
         self.assertLess(per_second["stand-in"], 1.5 * per_second["64"])
         self.assertLess(found["stand-in"][0], found["1"][0])
 
