@@ -3,7 +3,7 @@
 
 from array import array
 
-from core import lettering
+from core.picture import bitmap_letters
 
 GAP = 4  # pixels between panels
 BAR = 12  # height of the line of text under each panel
@@ -42,7 +42,7 @@ class Canvas:
             self.pixels[at : at + len(row)] = row
 
     def write(self, text: str, left: int, top: int, color=(0.9, 0.9, 0.9)) -> None:
-        for x, y in lettering.pixels(text):
+        for x, y in bitmap_letters.pixels(text):
             if 0 <= left + x < self.width and 0 <= top + y < self.height:
                 at = 4 * ((top + y) * self.width + left + x)
                 self.pixels[at : at + 3] = array("f", color)
@@ -88,5 +88,5 @@ def make_strip(native, panels, legend, mask, columns: int):
             for word, color in legend:
                 canvas.fill(at, top + 5, 8, 8, color)
                 canvas.write(word, at + 11, top + 6, (1.0, 1.0, 1.0))
-                at += 11 + lettering.width(word) + 8
+                at += 11 + bitmap_letters.width(word) + 8
     return native.Image(canvas.width, canvas.height, canvas.pixels)
