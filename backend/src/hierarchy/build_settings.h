@@ -18,7 +18,7 @@ struct Model;
 
 namespace lodestone::hierarchy {
 
-/// What a build is for when there is no time for all of it.
+/// The picture that a build is for when there is no time for all of it.
 struct BuildDemand {
     View view;           // with the Pixel Error its picture is taken at
     double share = 0.2;  // most time to build, over what the picture takes as things are (a guess)
@@ -46,12 +46,12 @@ struct BuildSettings {
     /// Build only what one picture gains most from, in a share of its time. What is left keeps its
     /// finest level alone, and stays stale. Not part of the hash.
     std::optional<BuildDemand> demand;
-    /// What is finished goes to the store about this often, so that a build that is stopped or
+    /// Finished stand-ins go to the store about this often, so that a build that is stopped or
     /// killed is gone on with, not begun again. Not part of the hash.
     double keep_every_s = 20;
 };
 
-/// Of everything that changes a result, and of the version of the algorithms.
+/// The hash of everything that changes a result, and of the version of the algorithms.
 Hash hash_of(const BuildSettings& settings);
 
 }  // namespace lodestone::hierarchy

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Candidate selection: which of an object's candidates stay, looked at, and as bright as the finest.
+// Candidate selection: which of an object's candidates stay, proven, and as bright as the finest.
 #pragma once
 
 #include "hierarchy/candidate.h"
@@ -29,8 +29,8 @@ std::vector<StandInCandidate> select_candidates(std::vector<StandInCandidate>& a
                                                 const Keep& keep, const MeasuredFinest& finest,
                                                 FinestPictures& pictures, const Job& job);
 
-/// Makes opaque boxes whose sides are not of one color meshes of vertex colors, about as bright from
-/// each side as the finest, if something is of use then: they cost more.
+/// Makes opaque boxes whose sides are not of one color meshes of vertex colors, about as bright
+/// from each side as the finest, if something is of use then: they cost more.
 void paint_boxes(std::vector<StandInCandidate>& kept, const Keep& keep,
                  const MeasuredFinest& finest);
 

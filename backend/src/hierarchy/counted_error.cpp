@@ -11,7 +11,7 @@ namespace {
 constexpr double kLeastRelativeError = 1e-7;
 // Roads, pavements and lawns lie on the ground in thin layers. A level that sinks by a little more
 // than the layer is thick hides it, which shows from as far as the layer is wide: environment
-// counts as this many times wider than it is off. Taste.
+// counts as this many times wider than it is off. Taste, seen on the street's roads.
 constexpr double kLayerWidth = 16;
 // A thing is flat where it is, in the standard deviations of its surface, this much thinner than
 // wide. Taste.

@@ -15,7 +15,7 @@
 
 namespace lodestone::hierarchy {
 
-/// What the original is, which rays do not tell.
+/// All that is told of an original: rays do not tell it.
 struct FinestOptions {
     uint64_t seed = 1;
     bool environment = false;
@@ -65,7 +65,7 @@ struct MeasuredFinest {
 
     /// The error of a stand-in that is off by that distance.
     double error_at(double distance) const;
-    /// What a distance may be where an error is at most that.
+    /// The largest distance of a stand-in whose error is at most that.
     double distance_for(double error) const;
 };
 

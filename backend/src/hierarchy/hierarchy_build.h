@@ -20,7 +20,7 @@ struct BuildReport {
     double cpu_s = 0;
 };
 
-/// What build_hierarchy would do; wall_s is a guess from the triangles.
+/// Tells what build_hierarchy() would do; wall_s is a guess from the triangles.
 BuildReport estimate_build(Model& model, const segment::Store& store,
                            const BuildSettings& settings);
 

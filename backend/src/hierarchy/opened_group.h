@@ -11,11 +11,11 @@ namespace lodestone::hierarchy {
 /// How finely an ellipsoid is drawn by triangles: 80 of them.
 inline constexpr int kDrawnSubdivisions = 1;
 
-/// What an occurrence of the group's children is within an error.
+/// The costs of an occurrence of the group's children within an error.
 struct DrawnCosts {
     uint64_t triangles = 0;  // of the flat mesh
     double bytes = 0;        // in POV-Ray
-    double alone = 0;        // likewise, with all of each representation's: as the cut counts
+    double alone = 0;        // the same with all of each representation's: as the cut counts
 };
 
 /// Remembers what it was asked. The group's own stand-ins do not count. The model and `uses`, by

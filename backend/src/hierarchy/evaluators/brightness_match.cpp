@@ -45,7 +45,7 @@ void match_brightness(StandInCandidate& candidate, const MeasuredFinest& finest,
                       FinestPictures& pictures, double used_to, const Job& job) {
     constexpr double kAlikeBright = 0.01;  // taste: nobody sees it
     constexpr double kMost = 2;            // taste, in a round
-    // What glows, and what is clear, has no part in the correction: further rounds are nearer.
+    // Glowing and clear slots have no part in the correction: further rounds are nearer. Taste.
     constexpr int kRounds = 3;
     if (candidate.state != CandidateState::Measured || !is_matched(finest, used_to))
         return;

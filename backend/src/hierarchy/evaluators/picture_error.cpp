@@ -50,7 +50,7 @@ void compare_pictures(StandInCandidate& candidate, std::span<const uint16_t> tin
                       const MeasuredFinest& finest, const FinestPictures& pictures,
                       const Job& job) {
     constexpr double kAlikeBright = 0.02;  // taste: nobody sees it
-    // Of a mesh some of the light is that of other slots. Taste.
+    // Some of the light of a mesh is that of other slots: a second round is nearer. Taste.
     constexpr int kRounds = 2;
     const measure::AgreementReference& reference = pictures.taken();
     std::vector<uint16_t> all(candidate.materials.size());

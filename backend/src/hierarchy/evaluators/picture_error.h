@@ -10,8 +10,8 @@
 
 namespace lodestone::hierarchy {
 
-/// Of the pixel size from which on whole pictures agree, the share that what is near in space may
-/// have as an error. Taste.
+/// The share of the pixel size from which on whole pictures agree that counts as the error of
+/// something near in space. Taste.
 inline constexpr double kPictures = 0.5;
 
 /// The pictures of the finest: taken once, by the first who needs them and as fine as he does. Who

@@ -10,8 +10,8 @@
 namespace lodestone::hierarchy {
 
 /// Settles those candidates whose solids were matched by few rays; of a group the composites alone.
-/// What stands at `floor` or would reach below it keeps its foot. Single solids stay where the
-/// finest was measured exactly, and all whose error is the radius or more.
+/// Solids that stand at `floor` or would reach below it keep their foot. Single solids stay as they
+/// are where the finest was measured exactly, and all do whose error is the radius or more.
 void settle_solids(std::span<StandInCandidate> candidates, const MeasuredFinest& finest,
                    double floor, const Job& job);
 

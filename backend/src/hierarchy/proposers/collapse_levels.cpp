@@ -6,8 +6,6 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// Fewer triangles than this are left to primitives.
-
 bool shows_vertex_colors(const Material& material) {
     return material.vertex_colors || (material.other && shows_vertex_colors(*material.other));
 }

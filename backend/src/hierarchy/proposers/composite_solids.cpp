@@ -14,7 +14,7 @@ namespace {
 
 /// How many solids may be of use beside the parts of the whole.
 size_t most_solids(const std::vector<StandInCandidate>& candidates, const ReplacedObject& whole) {
-    constexpr size_t kMost = 32;
+    constexpr size_t kMost = 32;  // taste: a mesh is as cheap
     // It is used up to the error of the next one, and what its parts cost is asked for half way.
     double next = std::numeric_limits<double>::infinity();
     for (const StandInCandidate& candidate : candidates) {
@@ -66,8 +66,8 @@ void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
                     const prune::Crowd& crowd, size_t most, const MeasuredFinest& finest,
                     const FinestPictures& pictures, const ReplacedObject& whole, const Job& job) {
     // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one
-    // that shows as much (of 357 levels a tenth came to .6 of its error or less, half to as much or
-    // more): only those that may pay by these are matched. Fewer solids are hardly ever much
+    // that shows as much (of 357 levels a tenth came to 0.6 of its error or less, half to as much
+    // or more): only those that may pay by these are matched. Fewer solids are hardly ever much
     // nearer: where not even that would pay, one picture is enough.
     constexpr double kNearer = 0.7;
     constexpr double kFewerNearer = 0.75;

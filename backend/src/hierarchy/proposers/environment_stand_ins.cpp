@@ -15,8 +15,8 @@
 namespace lodestone::hierarchy {
 namespace {
 
-constexpr int kBesideSubdivisions = 1;  // an ellipsoid of 80 triangles
-constexpr size_t kMostBeside = 8;       // solids
+constexpr int kBesideSubdivisions = 1;  // an ellipsoid of 80 triangles; taste
+constexpr size_t kMostBeside = 8;       // solids; taste
 
 struct SolidsInEnvironment {
     Composite composite;

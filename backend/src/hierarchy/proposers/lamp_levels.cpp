@@ -10,13 +10,14 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// Where more of the surface glows than this, it is no lamp among other things.
+// Where more of the surface glows than this, it is no lamp among other things. Taste.
 constexpr double kMostOfArea = 0.25;
-// Of a lamp in a level: the simplest ball.
+// The triangles of a lamp in a level: the simplest ball, an octahedron.
 constexpr size_t kTrianglesOfLamp = 8;
-// And of a level for all its lamps together, unless they are more of the mesh.
+// All lamps of a level together have one of so many triangles, unless they are more of the mesh.
+// Taste.
 constexpr size_t kShareOfLamps = 3;
-constexpr size_t kFewestOfRest = 4;
+constexpr size_t kFewestOfRest = 4;  // triangles: the simplest body, a tetrahedron
 
 struct LampSplit {
     Mesh lamps;

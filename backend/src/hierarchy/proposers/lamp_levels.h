@@ -11,9 +11,9 @@
 
 namespace lodestone::hierarchy {
 
-/// Levels as simplify::simplify_chain() makes them, but loose parts that glow in the midst of others (a bulb in its
-/// globe) are simplified by themselves, to a twelfth of the triangles or more: as small as they are
-/// they would vanish first, and with them what lights the thing.
+/// Levels as simplify::simplify_chain() makes them, but loose parts that glow in the midst of
+/// others (a bulb in its globe) are simplified by themselves, to a twelfth of the triangles or
+/// more: as small as they are they would vanish first, and with them what lights the thing.
 std::vector<Mesh> simplify_with_lamps(const Mesh& mesh, std::span<const Material> materials,
                                       std::span<const size_t> targets, const Job& job);
 

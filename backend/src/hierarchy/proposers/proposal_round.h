@@ -12,10 +12,11 @@
 
 namespace lodestone::hierarchy {
 
-/// Where collapsing keeps a fifth of the triangles near the surface, parts are details of it. Taste.
+/// Where collapsing keeps a fifth of the triangles near the surface, parts are details of it.
+/// Taste.
 inline constexpr double kCollapsed = 0.2;
 inline constexpr double kNear = 1.0 / 8;  // over the radius; taste
-/// A composite of eight is off by a fifth of the radius, more or less. Measured.
+/// A composite of eight is off by a fifth of the radius, more or less. Rule of thumb.
 inline constexpr double kOff = 0.2;
 
 /// Triangles of a mesh that costs so many bytes for each of its occurrences.
@@ -40,7 +41,7 @@ struct ReplacedObject {
     std::function<bool(double bytes, double error)> pays = {};
 };
 
-/// What is worth proposing. All of it must last.
+/// The limits of what is worth proposing. All of it must last.
 struct ProposalLimits {
     const Mesh& mesh;  // the finest, or what of it can be seen: stand-ins are made of this
     ReplacedObject whole;
@@ -48,8 +49,8 @@ struct ProposalLimits {
     std::vector<size_t> targets = {};       // triangles of levels, falling
     double told = 0;                        // errors up to this are told in any case
     std::vector<uint8_t> environment = {};  // by triangle of the finest; empty: no group
-    /// The error from which on a mesh of so many triangles is no use, whatever else there is; empty:
-    /// always some.
+    /// The error from which on a mesh of so many triangles is no use, whatever else there is;
+    /// empty: it is always of some.
     std::function<double(size_t triangles)> useless = {};
     /// Finds the loose parts that may be pruned; empty: there are none.
     std::function<prune::Crowd()> find_crowd = {};

@@ -14,14 +14,15 @@ namespace {
 
 using prune::Crowd;
 
+// Fewer parts than this are no crowd any more. Taste.
 constexpr size_t kFewestParts = 8;
-// Parts of more triangles than this are simplified as well as thinned.
+// Parts of more triangles than this are simplified as well as thinned. Taste.
 constexpr size_t kPlainPart = 12;
-constexpr double kMostGrowth = 64;
-// Enlarged parts hide more of each other: growth is corrected by what is seen, so often.
+constexpr double kMostGrowth = 64;  // of areas; taste: larger parts do not look like a crowd
+// Enlarged parts hide more of each other: growth is corrected by what is seen, so often. Taste.
 constexpr int kCorrections = 3;
 
-/// What is kept at one level.
+/// The parts and triangles that are kept at one level.
 struct PruningStep {
     size_t parts;
     size_t crowd_triangles;  // after simplification
@@ -45,7 +46,7 @@ std::vector<PruningStep> steps_of(const Crowd& crowd, size_t rest, double ratio)
     }
 }
 
-/// The rest at each step's triangles; the mesh itself where it cannot get simpler.
+/// All but the crowd at each step's triangles; the mesh itself where it cannot get simpler.
 std::vector<Mesh> rests_of(const Mesh& rest, const std::vector<PruningStep>& steps,
                            const Job& job) {
     std::vector<size_t> targets;
@@ -170,7 +171,7 @@ private:
 
     /// Moves growth towards what shows as much as the whole crowd; true when it does already.
     bool correct(std::vector<double>& growth, const std::vector<double>& now) const {
-        constexpr double kSameArea = 0.02;
+        constexpr double kSameArea = 0.02;  // taste: about what the rays know
         bool right = true;
         for (size_t kind = 0; kind < growth.size(); ++kind) {
             if (!(now[kind + 1] > 0) || !(visible_[kind] > 0))

@@ -18,7 +18,7 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// What is mostly thin shows less than this share of its bound's surface, ...
+// A thing that is mostly thin shows less than this share of its bound's surface, ...
 constexpr double kSparsest = 0.08;
 // ... and so much of it at least in thin parts, ...
 constexpr double kMostlyThin = 0.25;
@@ -123,7 +123,7 @@ std::vector<uint8_t> not_of(std::vector<uint8_t> marks) {
     return marks;
 }
 
-/// Of a level all loose parts but those that stand for thin ones.
+/// All loose parts of a level but those that stand for thin ones.
 Mesh rest_of(const Mesh& level, const ThinParts& thin, const MeasuredFinest& finest) {
     const std::vector<uint32_t> part_of = group::loose_parts(level);
     std::vector<double> thin_area;  // by part, less what is not

@@ -9,7 +9,7 @@
 
 namespace lodestone::hierarchy {
 
-/// Of every object of a model, by index; made once for a build.
+/// The surroundings of every object of a model, by index; made once for a build.
 struct StandInSurroundings {
     std::vector<uint64_t> uses;        // how often each object is drawn (uses_of)
     std::vector<uint8_t> environment;  // whether it is or holds Environment (with_environment)
