@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what is said of a group's children that are drawn together: each may be right alone.
+#include "base/error.h"
 #include "hierarchy/evaluators/picture_error.h"
 #include "scenes/small_models.h"
 #include "scenes/with_rays.h"
@@ -58,4 +59,41 @@ TEST_F(StandInPictureError, BooksThatAreDarkTogetherDoNotStandForTheirPile) {
     const glm::dvec3 mean = (covers * cover + sides * paper) / (covers + sides);
     EXPECT_FALSE(alike(boxes, mean.x / paper.x, mean));
     EXPECT_FALSE(looks_alike(pile, materials, 0.0005, finest, pictures, {}));  // finer than its own
+}
+
+TEST_F(StandInPictureError, PicturesAreTakenOnceByTheFirstWhoNeedsThem) {
+    const Mesh ball = shapes::sphere(1, 2);
+    const std::vector<Material> materials{models::colored("gray", glm::dvec3(0.5))};
+    image::TexelCache texels;
+    const hierarchy::MeasuredFinest finest =
+        hierarchy::measure_finest(ball, materials, texels, {}, {}, {});
+    hierarchy::FinestPictures pictures(finest);
+    EXPECT_THROW(static_cast<void>(pictures.taken()), Error);
+    using Pictures = measure::AgreementReference;
+    const Pictures* first = &pictures.take(ball, Pictures::kCoarseSide, {});
+    const ray::SkinPtr skin = finest.skin;
+    const double coarse = first->of(shapes::sphere(0.8, 2), skin).error;
+    EXPECT_EQ(&pictures.take(ball, Pictures::kSide, {}), first);
+    EXPECT_EQ(&pictures.taken(), first);
+    EXPECT_EQ(pictures.taken().of(shapes::sphere(0.8, 2), skin).error, coarse);
+}
+
+TEST_F(StandInPictureError, ABallAsLargeAndOfAnotherBrightnessIsMadeAsBright) {
+    const Mesh ball = shapes::sphere(1, 3);
+    const std::vector<Material> materials{models::colored("gray", glm::dvec3(0.5))};
+    image::TexelCache texels;
+    const hierarchy::MeasuredFinest finest =
+        hierarchy::measure_finest(ball, materials, texels, {}, {}, {});
+    hierarchy::FinestPictures pictures(finest);
+    hierarchy::StandInCandidate candidate;
+    candidate.kind = Kind::Ellipsoid;
+    candidate.primitive.half_size = glm::dvec3(1);
+    candidate.materials = {models::colored("dark", glm::dvec3(0.3))};
+    EXPECT_THROW(compare_pictures(candidate, {}, finest, pictures, {}), Error) << "none are taken";
+    pictures.take(ball, measure::AgreementReference::kCoarseSide, {});
+    compare_pictures(candidate, {}, finest, pictures, {});
+    EXPECT_EQ(candidate.state, hierarchy::CandidateState::Pictured);
+    EXPECT_NEAR(candidate.materials[0].base_color.x, 0.5, 0.02);
+    EXPECT_LT(candidate.error, 0.1);
+    EXPECT_THROW(compare_pictures(candidate, {}, finest, pictures, {}), Error) << "it was already";
 }
