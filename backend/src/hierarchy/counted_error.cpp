@@ -6,15 +6,17 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// An error below this fraction of the size is float noise; the finest alone has error 0. Law:
-// positions are floats, which have 24 bits.
+// An error below this fraction of the size is float noise; the finest alone has error 0.
+// Law: positions are floats, which have 24 bits.
 constexpr double kLeastRelativeError = 1e-7;
 // Roads, pavements and lawns lie on the ground in thin layers. A level that sinks by a little more
 // than the layer is thick hides it, which shows from as far as the layer is wide: environment
-// counts as this many times wider than it is off. Taste, seen on the street's roads.
+// counts as this many times wider than it is off.
+// Taste: a larger value keeps the ground finer from afar and costs more triangles.
 constexpr double kLayerWidth = 16;
 // A thing is flat where it is, in the standard deviations of its surface, this much thinner than
-// wide. Taste.
+// wide.
+// Taste: a larger value takes thicker things for layers.
 constexpr double kFlat = 0.05;
 
 }  // namespace

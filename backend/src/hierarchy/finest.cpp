@@ -10,16 +10,24 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// Below this mean opacity nothing solid stands for it: it would hide what shines through. Taste.
+// Below this mean opacity nothing solid stands for it: it would hide what shines through.
+// Taste: a larger value leaves fewer solids to what is nearly opaque.
 constexpr double kLeastOpacity = 0.9;
-// Rays from a triangle of a group that decide whether anything outside can see it. Taste.
+// The rays from a triangle of a group that decide whether anything outside can see it.
+// Taste: more find more triangles behind narrow gaps, in time in proportion.
 constexpr int kRaysPerTriangle = 16;
 
 /// The ground is large, and what lies on it (roads, fields) a small share of it; a few triangles,
-/// with all of their corners, are known from a few points of each. All three numbers are taste.
+/// with all of their corners, are known from a few points of each.
 uint32_t samples_of(const Mesh& finest, bool environment, const BuildSettings& settings) {
-    constexpr uint32_t kOfEnvironment = 8;  // times as many
+    // How many times as many samples the ground has.
+    // Taste: more see smaller things on it, in time in proportion.
+    constexpr uint32_t kOfEnvironment = 8;
+    // The samples of a triangle where they are few.
+    // Taste: more know errors better, in time in proportion.
     constexpr uint64_t kOfTriangle = 8;
+    // The fewest samples of a mesh.
+    // Taste: more know the errors of simple meshes better, in time in proportion.
     constexpr uint64_t kFewest = 512;
     if (environment)
         return kOfEnvironment * settings.samples;

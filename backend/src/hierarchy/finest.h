@@ -15,7 +15,7 @@
 
 namespace lodestone::hierarchy {
 
-/// All that is told of an original: rays do not tell it.
+/// The facts about the original that rays do not tell.
 struct FinestOptions {
     uint64_t seed = 1;
     bool environment = false;

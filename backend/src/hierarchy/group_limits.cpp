@@ -15,7 +15,8 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// So many things drawn in a group may be a crowd. Taste.
+// So many things drawn in a group may be a crowd.
+// Taste: a larger number looks for crowds in fewer groups.
 constexpr size_t kManyChildren = 32;
 
 /// Leaves out what no ray from outside reaches (of the occurrences too); everything stays when
@@ -39,7 +40,9 @@ Mesh without_hidden(const Mesh& mesh, const std::vector<uint8_t>& seen,
 /// The crowd in a group: leaves and the like where that is what its children are made of, else the
 /// children.
 prune::Crowd crowd_in(const Mesh& mesh, const std::vector<uint32_t>& occurrence) {
-    constexpr size_t kPartsOfFoliage = 16;  // of an occurrence, in the mean; taste
+    // The loose parts of an occurrence, in the mean, from which on it is foliage.
+    // Taste: a larger number prunes whole children more often than their leaves.
+    constexpr size_t kPartsOfFoliage = 16;
     prune::Crowd parts = prune::find_crowd(mesh);
     const std::set<uint32_t> drawn(occurrence.begin(), occurrence.end());
     if (parts.parts.size() >= kPartsOfFoliage * drawn.size())
@@ -49,7 +52,9 @@ prune::Crowd crowd_in(const Mesh& mesh, const std::vector<uint32_t>& occurrence)
 
 bool lies_on_a_layer(const Model& model, ObjectIndex index, const std::vector<Hash>& layers,
                      std::set<ObjectIndex>& asked) {
-    constexpr double kMost = 0.5;  // of the radius; taste
+    // The share of the group's radius that makes a child most of it.
+    // Taste: a larger value finds fewer groups that lie on a layer.
+    constexpr double kMost = 0.5;
     if (!asked.insert(index).second)
         return false;
     const Object& object = model.objects[index];
@@ -74,7 +79,10 @@ bool lies_on_a_layer(const Model& model, ObjectIndex group, const std::vector<Ha
 }
 
 ChildCosts::ChildCosts(OpenedGroup& group, double error, const Job& job) {
-    constexpr int kFinest = -10;  // powers of two, over the radius; taste
+    // The errors at which costs are asked for are powers of two, over the radius.
+    // Taste: a larger one knows less of fine levels, for a search less.
+    constexpr int kFinest = -10;
+    // Taste: a larger one asks for errors that are larger than any group is seen with.
     constexpr int kCoarsest = 3;
     const auto add = [&](double at) { steps_.push_back({at, group.drawn_within(at, job).bytes}); };
     add(error);

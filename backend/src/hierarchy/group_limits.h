@@ -15,10 +15,10 @@ struct StandInSurroundings;  // hierarchy/run/stand_in_surroundings.h
 /// many houses is flat too, but in no layers. `layers`: by object (flat_layers.h).
 bool lies_on_a_layer(const Model& model, ObjectIndex group, const std::vector<Hash>& layers);
 
-/// What the children of a group cost within rising errors.
+/// The costs of a group's children within rising errors.
 class ChildCosts {
 public:
-    /// From `error` on.
+    /// The costs are asked for from `error` on, in metres.
     ChildCosts(OpenedGroup& group, double error, const Job& job);
 
     double bytes() const { return steps_.front().bytes; }

@@ -7,8 +7,8 @@ namespace lodestone {
 
 namespace {
 
-// What one more field gives away: a member that is not in the list. Any converts to every type, so
-// that a struct has as many members as there are Anys to make it of.
+// Any converts to every type, so that a struct has as many members as there are Anys to make it of.
+// One more than are listed gives away a member that is not in the list.
 struct Any {
     template <typename Value>
     operator Value() const;

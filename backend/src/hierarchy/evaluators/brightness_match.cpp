@@ -13,15 +13,18 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// Over the radius: what is used up to here is that where the whole is 24 pixels large or more, and
-// looks alike. Taste.
+// An error over the radius. A level that is used up to this error is seen where the whole is 24
+// pixels large or more, and is matched to look alike.
+// Taste: a larger value matches fewer levels.
 constexpr double kUsedNear = 1.0 / 12;
 
 /// Makes what glows of a candidate glow as much as the finest does.
 void match_glow(StandInCandidate& candidate,
                 const measure::AgreementReference::TracedPictures& traced,
                 const MeasuredFinest& finest, FinestPictures& pictures, const Job& job) {
-    constexpr double kMost = 4;  // taste: what is off by more is not made right by its light
+    // The most by which glow changes.
+    // Taste: a larger value mends by light what is wrong by its shape.
+    constexpr double kMost = 4;
     const glm::dvec3& glow = pictures.glow(job);
     const glm::dvec3 now =
         light_over_emitted(pictures.taken(), traced, candidate.materials, finest);
@@ -43,9 +46,14 @@ bool is_matched(const MeasuredFinest& finest, double used_to) {
 
 void match_brightness(StandInCandidate& candidate, const MeasuredFinest& finest,
                       FinestPictures& pictures, double used_to, const Job& job) {
-    constexpr double kAlikeBright = 0.01;  // taste: nobody sees it
-    constexpr double kMost = 2;            // taste, in a round
-    // Glowing and clear slots have no part in the correction: further rounds are nearer. Taste.
+    // The relative difference of light that counts as none.
+    // Taste: nobody sees this much; a larger value leaves visible differences.
+    constexpr double kAlikeBright = 0.01;
+    // The most by which a round changes a color.
+    // Taste: a larger value may overshoot where light is scattered many times.
+    constexpr double kMost = 2;
+    // Materials that glow or are clear have no part in the correction: further rounds come nearer.
+    // Taste: more come nearer still, for a shading of the pictures each.
     constexpr int kRounds = 3;
     if (candidate.state != CandidateState::Measured || !is_matched(finest, used_to))
         return;

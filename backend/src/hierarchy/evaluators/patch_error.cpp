@@ -11,15 +11,18 @@ namespace lodestone::hierarchy {
 namespace {
 
 // A level that shows this much more or less surface than the original is no simplification of it
-// (foliage gone bald), however near its remaining points are. Taste.
+// (foliage gone bald), however near its remaining points are.
+// Taste: a larger value allows foliage that is balder.
 constexpr double kMostAreaChange = 0.25;
-// The share of the size of patches that look different which is their error. Taste; other settings
-// of patches are in EXPERIMENTS.md, tried on the street and the sheet.
+// The share of the size of patches that look different which is their error.
+// Taste: a larger value keeps finer levels where colors differ.
 constexpr double kPatches = 0.5;
 
 bool shows_as_much_in(const Mesh& level, const ray::MeshScene& scene, const MeasuredFinest& finest,
                       const Job& job) {
-    // Few rays tell what is nearly alike or far from it: so far off they are not sure. Taste.
+    // Few rays tell levels that are nearly alike from those that are far off. They are not sure
+    // where the change is within this distance of the limit.
+    // Taste: a larger value casts more rays.
     constexpr double kUnsure = 0.15;
     const measure::VisibleSampler sampler(level, scene, finest.options.seed);
     double change = 0;

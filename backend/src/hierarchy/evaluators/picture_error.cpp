@@ -49,8 +49,11 @@ glm::dvec3 light_over_emitted(const measure::AgreementReference& pictures,
 void compare_pictures(StandInCandidate& candidate, std::span<const uint16_t> tinted,
                       const MeasuredFinest& finest, const FinestPictures& pictures,
                       const Job& job) {
-    constexpr double kAlikeBright = 0.02;  // taste: nobody sees it
-    // Some of the light of a mesh is that of other slots: a second round is nearer. Taste.
+    // The relative difference of light that counts as none.
+    // Taste: nobody sees this much; a larger value leaves visible differences.
+    constexpr double kAlikeBright = 0.02;
+    // Some of a mesh's light comes from other slots, so that one round is not enough.
+    // Taste: more rounds come nearer, for a shading of the pictures each.
     constexpr int kRounds = 2;
     const measure::AgreementReference& reference = pictures.taken();
     std::vector<uint16_t> all(candidate.materials.size());
@@ -81,7 +84,9 @@ void compare_pictures(StandInCandidate& candidate, std::span<const uint16_t> tin
 
 bool looks_alike(const Mesh& drawn, std::span<const Material> materials, double error,
                  const MeasuredFinest& finest, FinestPictures& pictures, const Job& job) {
-    constexpr double kMostOff = 0.1;  // taste
+    // The most by which the mean light may differ, relatively.
+    // Taste: a larger value accepts levels that are visibly darker or brighter.
+    constexpr double kMostOff = 0.1;
     const measure::AgreementReference& reference =
         pictures.take(finest.mesh, measure::AgreementReference::kCoarseSide, job);
     const ray::SkinPtr skin = finest.skin_of(materials);

@@ -10,8 +10,9 @@
 
 namespace lodestone::hierarchy {
 
-/// The share of the pixel size from which on whole pictures agree that counts as the error of
-/// something near in space. Taste.
+/// The share of the pixel size from which on whole pictures agree that counts as the error of a
+/// level whose points are near in space.
+/// Taste: a larger value keeps finer levels where pictures differ.
 inline constexpr double kPictures = 0.5;
 
 /// The pictures of the finest: taken once, by the first who needs them and as fine as he does. Who

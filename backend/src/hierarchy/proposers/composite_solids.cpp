@@ -14,8 +14,10 @@ namespace {
 
 /// How many solids may be of use beside the parts of the whole.
 size_t most_solids(const std::vector<StandInCandidate>& candidates, const ReplacedObject& whole) {
-    constexpr size_t kMost = 32;  // taste: a mesh is as cheap
-    // It is used up to the error of the next one, and what its parts cost is asked for half way.
+    // Taste: a larger number tries larger composites, which are matched slowly and rarely pay.
+    constexpr size_t kMost = 32;
+    // A composite is used up to the error of the next one; the costs of its parts are asked for
+    // half way.
     double next = std::numeric_limits<double>::infinity();
     for (const StandInCandidate& candidate : candidates) {
         if (candidate.kind != Kind::Mesh)
@@ -66,12 +68,16 @@ void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
                     const prune::Crowd& crowd, size_t most, const MeasuredFinest& finest,
                     const FinestPictures& pictures, const ReplacedObject& whole, const Job& job) {
     // Exact matching takes most of the time, and rarely makes a composite nearer than a rough one
-    // that shows as much (of 357 levels a tenth came to 0.6 of its error or less, half to as much
-    // or more): only those that may pay by these are matched. Fewer solids are hardly ever much
-    // nearer: where not even that would pay, one picture is enough.
+    // that shows as much: only those that may pay by these are matched. Fewer solids are hardly
+    // ever much nearer: where not even that would pay, one picture is enough.
+    // Fitted: of 357 levels a tenth came to 0.6 of the error of the rough one or less, half to as
+    // much or more; the script was not kept.
     constexpr double kNearer = 0.7;
+    // Taste: a smaller value compares more pictures of composites with fewer solids.
     constexpr double kFewerNearer = 0.75;
+    // Taste: more rays make the rough composites better, in time in proportion.
     constexpr uint32_t kFewRays = 1024;
+    // Taste: more samples make the rough composites better, in time in proportion.
     constexpr uint32_t kFewSamples = 2048;
     // Between leaves one sees far into a crown: a solid with the same variances would be too small.
     solids::CompositeOptions options{finest.options.seed};
@@ -122,11 +128,15 @@ void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
 }  // namespace
 
 void propose_composites(ProposalRound& round) {
-    // Solids that the same memory would hold. Few collapsed triangles beside a smooth thing are as
-    // good, and comparing pictures takes long. Taste.
+    // How many solids the memory of a near level must hold for composites to be tried. Few
+    // collapsed triangles beside a smooth thing are as good, and comparing pictures takes long.
+    // Taste: a larger number tries composites for fewer things.
     constexpr double kSolidsByPictures = 16;
+    // Taste: a larger number tries composites for fewer things that distances tell of.
     constexpr double kSolidsByDistance = 64;
-    constexpr size_t kFewest = 4;  // solids of the cheapest; taste
+    // The solids of the cheapest composite.
+    // Taste: a larger number tries composites for fewer things.
+    constexpr size_t kFewest = 4;
     const ReplacedObject& whole = round.limits.whole;
     if (round.finest.options.environment || whole.ground)
         return;

@@ -10,14 +10,19 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// Where more of the surface glows than this, it is no lamp among other things. Taste.
+// Where a larger share of the surface glows, the mesh is no thing with lamps but a lamp itself.
+// Taste: a larger value keeps glowing things as lamps that are most of what is seen.
 constexpr double kMostOfArea = 0.25;
-// The triangles of a lamp in a level: the simplest ball, an octahedron.
+// The triangles that a lamp keeps in a level.
+// Law: an octahedron, the simplest ball.
 constexpr size_t kTrianglesOfLamp = 8;
-// All lamps of a level together have one of so many triangles, unless they are more of the mesh.
-// Taste.
+// All lamps together keep at most one triangle of a level in so many, unless they are a larger
+// share of the mesh.
+// Taste: a larger number leaves more triangles to all else and makes lamps coarser.
 constexpr size_t kShareOfLamps = 3;
-constexpr size_t kFewestOfRest = 4;  // triangles: the simplest body, a tetrahedron
+// The fewest triangles of a level besides its lamps.
+// Law: a tetrahedron, the simplest closed surface.
+constexpr size_t kFewestOfRest = 4;
 
 struct LampSplit {
     Mesh lamps;

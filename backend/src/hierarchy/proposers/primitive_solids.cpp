@@ -41,7 +41,9 @@ void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& boun
         const bool is_box = kind == Kind::Box;
         const solids::HeightRange reach = solids::reach_of(primitive, is_box);
         add(kind, solids::kept_above(primitive, is_box, floor), 1);
-        constexpr double kStands = 0.01;  // over its height; taste
+        // The gap above the floor, over the height of the solid, that counts as none.
+        // Taste: a larger value leaves solids that hover visibly.
+        constexpr double kStands = 0.01;
         if (reach.low - floor > kStands * (reach.high - reach.low))
             add(kind, solids::standing_on(primitive, is_box, floor), 1);
     };

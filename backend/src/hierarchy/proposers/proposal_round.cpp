@@ -11,8 +11,11 @@ size_t triangles_for(double bytes, uint64_t uses) {
 }
 
 bool is_foliage(const prune::Crowd& crowd) {
-    constexpr size_t kFewestLeaves = 256;  // taste
-    constexpr size_t kTriangles = 8;       // of a leaf, in the mean; taste
+    // Taste: a larger number compares pictures of fewer things.
+    constexpr size_t kFewestLeaves = 256;
+    // The most triangles of a leaf, in the mean.
+    // Taste: a larger number takes things of larger parts for foliage.
+    constexpr size_t kTriangles = 8;
     return crowd.parts.size() >= kFewestLeaves &&
            crowd.triangles <= kTriangles * crowd.parts.size();
 }
@@ -20,7 +23,8 @@ bool is_foliage(const prune::Crowd& crowd) {
 ProposalRound::ProposalRound(const MeasuredFinest& original, FinestPictures& taken,
                              const ProposalLimits& limits_of_it, const Job& asked)
     : finest(original), pictures(taken), limits(limits_of_it), job(asked) {
-    // Less than so many solids would cost is not worth a tenth of a second of pictures. Taste.
+    // An original that costs less than so many solids is not worth a tenth of a second of pictures.
+    // Taste: a larger number compares pictures of fewer things.
     constexpr double kFewSolids = 32;
     const ReplacedObject& whole = limits.whole;
     if (finest.options.environment || !(whole.bytes > kFewSolids * kBytesPerPrimitive) ||

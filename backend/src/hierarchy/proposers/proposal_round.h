@@ -12,11 +12,14 @@
 
 namespace lodestone::hierarchy {
 
-/// Where collapsing keeps a fifth of the triangles near the surface, parts are details of it.
-/// Taste.
+/// Where collapsing to this share of the triangles stays near the surface, parts are details of it.
+/// Taste: a larger value prunes fewer things.
 inline constexpr double kCollapsed = 0.2;
-inline constexpr double kNear = 1.0 / 8;  // over the radius; taste
-/// A composite of eight is off by a fifth of the radius, more or less. Rule of thumb.
+/// The error that is still near, over the radius.
+/// Taste: a larger value prunes fewer things.
+inline constexpr double kNear = 1.0 / 8;
+/// The error of a composite of eight solids, over the radius, more or less.
+/// Fitted: to measured composites of eight; the script was not kept.
 inline constexpr double kOff = 0.2;
 
 /// Triangles of a mesh that costs so many bytes for each of its occurrences.
@@ -41,7 +44,7 @@ struct ReplacedObject {
     std::function<bool(double bytes, double error)> pays = {};
 };
 
-/// The limits of what is worth proposing. All of it must last.
+/// The limits within which proposals are worth their while. All that they refer to must last.
 struct ProposalLimits {
     const Mesh& mesh;  // the finest, or what of it can be seen: stand-ins are made of this
     ReplacedObject whole;
@@ -50,7 +53,7 @@ struct ProposalLimits {
     double told = 0;                        // errors up to this are told in any case
     std::vector<uint8_t> environment = {};  // by triangle of the finest; empty: no group
     /// The error from which on a mesh of so many triangles is no use, whatever else there is;
-    /// empty: it is always of some.
+    /// empty: it is always of some use.
     std::function<double(size_t triangles)> useless = {};
     /// Finds the loose parts that may be pruned; empty: there are none.
     std::function<prune::Crowd()> find_crowd = {};
