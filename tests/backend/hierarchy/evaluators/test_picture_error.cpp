@@ -94,6 +94,10 @@ TEST_F(StandInPictureError, ABallAsLargeAndOfAnotherBrightnessIsMadeAsBright) {
     compare_pictures(candidate, {}, finest, pictures, {});
     EXPECT_EQ(candidate.state, hierarchy::CandidateState::Pictured);
     EXPECT_NEAR(candidate.materials[0].base_color.x, 0.5, 0.02);
-    EXPECT_LT(candidate.error, 0.1);
+    hierarchy::StandInCandidate thinner = candidate;
+    thinner.state = hierarchy::CandidateState::Measured;
+    thinner.primitive.half_size.x = 0.4;
+    compare_pictures(thinner, {}, finest, pictures, {});
+    EXPECT_GT(thinner.error, 2 * candidate.error);
     EXPECT_THROW(compare_pictures(candidate, {}, finest, pictures, {}), Error) << "it was already";
 }
