@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/lamp/renderer_surfaces.h"
 
+#include "base/color.h"
 #include "light/light_arrival.h"
 #include "povray_export/scene/magnification.h"
 #include "povray_export/texture/surface_finish.h"
@@ -24,8 +25,7 @@ light::SurfaceReflection reflection_of(const Material& material) {
     light::SurfaceReflection out;
     out.albedo = glm::clamp(material.base_color, 0.0, 1.0);
     const double alpha = std::max(1e-3, look.roughness * look.roughness);
-    out.gloss =
-        finish.specular * (1 - look.metallic) + look.metallic * light::luminance(out.albedo);
+    out.gloss = finish.specular * (1 - look.metallic) + look.metallic * luminance(out.albedo);
     out.exponent = std::clamp(2 / (alpha * alpha) - 2, 1.0, kSharpest);
     out.albedo = glm::max(out.albedo, glm::dvec3(kDarkest));
     out.mirror = finish.mirror > 0 || finish.mirror_grazing > 0 || refraction_of(material) > 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/mesh/mesh_textures.h"
 
+#include "base/color.h"
 #include "base/error.h"
 #include "image/image.h"
 
@@ -34,7 +35,7 @@ Key key_of(const glm::vec4& color, bool alpha) {
     for (int i = 0; i < 4; ++i) {
         float value = std::isfinite(color[i]) ? std::clamp(color[i], 0.0f, 1.0f) : 1.0f;
         if (i < 3)
-            value = image::encode_srgb(value);
+            value = encode_srgb(value);
         else if (!alpha)
             value = 1;
         key = key << 16u | static_cast<Key>(std::lround(value * 65535));
@@ -57,7 +58,7 @@ glm::dvec4 color_of_key(Key key) {
     glm::dvec4 color;
     for (int i = 3; i >= 0; --i, key >>= 16u) {
         const float value = static_cast<float>(key & 0xffffu) / 65535.0f;
-        color[i] = i < 3 ? image::decode_srgb(value) : value;
+        color[i] = i < 3 ? decode_srgb(value) : value;
     }
     return color;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/texture/picture_writer.h"
 
+#include "base/color.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "image/texture_sampler.h"
@@ -129,7 +130,7 @@ std::string baked(const Texture& texture, PigmentContent content, int halvings) 
     if (content != PigmentContent::Number) {
         for (size_t i = 0; i < to.pixels.size(); ++i) {
             if (i % 4 != 3)
-                to.pixels[i] = image::encode_srgb(to.pixels[i]);
+                to.pixels[i] = encode_srgb(to.pixels[i]);
         }
     }
     return image::png_bytes(to);

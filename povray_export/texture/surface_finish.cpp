@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/texture/surface_finish.h"
 
+#include "base/color.h"
 #include "povray_export/scene/povray_number.h"
 
 #include <glm/common.hpp>
@@ -130,8 +131,7 @@ double coat_sharpness(double roughness) {
 glm::dvec3 from_srgb(const glm::dvec3& color) {
     glm::dvec3 linear;
     for (int i = 0; i < 3; ++i)
-        linear[i] =
-            color[i] <= 0.04045 ? color[i] / 12.92 : std::pow((color[i] + 0.055) / 1.055, 2.4);
+        linear[i] = decode_srgb(color[i]);
     return linear;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards approximated lights in pictures: rooms shade with their own lamps, nothing shines through
 // walls, floors of many rooms are cut, and what the number allows is all that differs.
+#include "base/color.h"
 #include "base/parallel.h"
 #include "light/light_plan.h"
 #include "povray/povray_scenes.h"
@@ -73,8 +74,7 @@ ExportOptions into(const std::string& name) {
 }
 
 double encoded(double value) {
-    const double v = std::clamp(value, 0.0, 1.0);
-    return v < 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055;
+    return encode_srgb(std::clamp(value, 0.0, 1.0));
 }
 
 size_t count_of(const std::string& text, const std::string& part) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards how far image textures are made smaller: never so that a pixel could tell more than asked.
+#include "base/color.h"
 #include "povray/povray_scenes.h"
 #include "povray_export/texture/picture_writer.h"
 
@@ -106,6 +107,6 @@ TEST(PovrayTextureError, HalvingKeepsTheMeanLight) {
     for (const auto& entry : std::filesystem::directory_iterator(folder / "i")) {
         const image::Image found = image::read(entry.path());
         EXPECT_EQ(found.width, 1);
-        EXPECT_NEAR(image::decode_srgb(found.pixels[0]), 0.5, 0.01);
+        EXPECT_NEAR(decode_srgb(found.pixels[0]), 0.5, 0.01);
     }
 }

@@ -2,6 +2,7 @@
 // Pictures and leaf cards with known answers, shared by the tests.
 #pragma once
 
+#include "base/color.h"
 #include "base/random.h"
 #include "image/image.h"
 #include "image/texture_sampler.h"
@@ -20,7 +21,7 @@ inline PicturePtr picture(int side, const std::function<glm::dvec4(double, doubl
         for (int column = 0; column < side; ++column) {
             const glm::dvec4 texel = color((column + 0.5) / side, 1 - (row + 0.5) / side);
             for (int c = 0; c < 3; ++c)
-                image.pixels.push_back(image::encode_srgb(static_cast<float>(texel[c])));
+                image.pixels.push_back(lodestone::encode_srgb(static_cast<float>(texel[c])));
             image.pixels.push_back(static_cast<float>(texel.w));
         }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/image.h"
 
+#include "base/color.h"
 #include "base/files.h"
 #include "capi/guard.h"
 #include "image/compare_images.h"
@@ -21,8 +22,7 @@ image::Image linearized(image::Image picture) {
         return picture;
     for (size_t i = 0; i < picture.pixels.size(); i += 4) {
         for (size_t c = 0; c < 3; ++c)
-            picture.pixels[i + c] =
-                image::decode_srgb(picture.pixels[i + c]) * picture.pixels[i + 3];
+            picture.pixels[i + c] = decode_srgb(picture.pixels[i + c]) * picture.pixels[i + 3];
     }
     picture.linear = true;
     return picture;

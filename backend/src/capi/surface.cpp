@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Showing a cut in false colors.
+#include "base/color.h"
 #include "capi/chosen.h"
 #include "capi/guard.h"
 #include "image/compare_shown.h"
@@ -15,7 +16,7 @@ namespace {
 
 uint8_t displayed(double linear) {
     const auto value = static_cast<float>(std::clamp(linear, 0.0, 1.0));
-    return static_cast<uint8_t>(std::lround(image::encode_srgb(value) * 255.0f));
+    return static_cast<uint8_t>(std::lround(encode_srgb(value) * 255.0f));
 }
 
 }  // namespace

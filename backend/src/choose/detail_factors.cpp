@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "choose/detail_factors.h"
 
+#include "base/color.h"
 #include "base/error.h"
 #include "base/maths.h"
 #include "choose/criterion.h"
@@ -90,10 +91,6 @@ double DetailFactors::total() const {
     return total_refinement(refine / (depth * motion * darkness * off_screen));
 }
 
-double displayed_radiance(double radiance) {
-    return radiance <= 0.0031308 ? 12.92 * radiance : 1.055 * std::pow(radiance, 1 / 2.4) - 0.055;
-}
-
 double coarser_by_motion(double pixels) {
     return std::min(kMostImportance, std::sqrt(1 + pixels * pixels));
 }
@@ -134,7 +131,7 @@ FactorField::FactorField(const Model& model, const View& view, bool in_any_order
         // The background behind a transparent film may be bright, and so may a picture of the sky.
         const World& world = model.world;
         background_ =
-            world.transparent || world.environment ? 1 : displayed_radiance(largest(world.color));
+            world.transparent || world.environment ? 1 : encode_srgb(largest(world.color));
         glows_.resize(model.objects.size(), 0);
         for (const ObjectIndex index : bottom_up(model)) {
             const Object& object = model.objects[index];
@@ -241,11 +238,11 @@ double FactorField::darkness(ObjectIndex object, const Bound& bound) const {
         return 1;
     double radiance = largest(model_.world.color);
     for (const Light& light : model_.lights) {
-        if (displayed_radiance(radiance) >= kMiddleShown)
+        if (encode_srgb(radiance) >= kMiddleShown)
             break;
         radiance += lit(light, bound);
     }
-    return coarser_by_darkness(std::max(displayed_radiance(radiance), background_));
+    return coarser_by_darkness(std::max(encode_srgb(radiance), background_));
 }
 
 }  // namespace lodestone::choose

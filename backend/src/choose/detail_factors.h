@@ -26,8 +26,6 @@ struct DetailFactors {
     double total() const;
 };
 
-/// The radiance as a display shows it: 0 ... 1 and above.
-double displayed_radiance(double radiance);
 /// The factor by which motion over `pixels` pixels, while the shutter is open, coarsens. The
 /// squares of the widths of a pixel and of the motion are added.
 double coarser_by_motion(double pixels);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "format/baked_textures.h"
 
+#include "base/color.h"
 #include "base/error.h"
 #include "image/texture_sampler.h"
 
@@ -129,7 +130,7 @@ std::optional<BakedTexture> bake_recipe(const Recipe& recipe, ColorSpace space, 
                 continue;
             value = std::min(value / static_cast<float>(baked.limit), 1.0f);
             if (space == ColorSpace::Srgb)
-                value = image::encode_srgb(value);
+                value = encode_srgb(value);
         }
         if (border.x > 0) {
             baked.texture.extension = TextureExtension::Extend;

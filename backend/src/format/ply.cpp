@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "format/ply.h"
 
+#include "base/color.h"
 #include "image/image.h"
 
 #include <algorithm>
@@ -318,7 +319,7 @@ private:
         else if (type == PlyType::Uint16)
             most = 65535;
         const auto share = static_cast<float>(value / most);
-        return most == 1 || alpha ? share : image::decode_srgb(share);
+        return most == 1 || alpha ? share : decode_srgb(share);
     }
 
     void read_vertices(const PlyElement& element) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/color.h"
 #include "format/ply.h"
 #include "image/image.h"
 
@@ -14,12 +15,12 @@ static_assert(std::endian::native == std::endian::little);
 
 /// The byte that reads back as the same bits, if there is one.
 std::optional<uint8_t> byte_of(float value, bool alpha) {
-    const float share = alpha ? value : image::encode_srgb(value);
+    const float share = alpha ? value : encode_srgb(value);
     if (!(share >= 0 && share <= 1))
         return std::nullopt;
     const auto byte = static_cast<uint8_t>(std::lround(255.0f * share));
     const float back = static_cast<float>(byte / 255.0);
-    if ((alpha ? back : image::decode_srgb(back)) != value)
+    if ((alpha ? back : decode_srgb(back)) != value)
         return std::nullopt;
     return byte;
 }

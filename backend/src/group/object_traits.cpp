@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "group/object_traits.h"
 
+#include "base/color.h"
 #include "base/parallel.h"
 #include "measure/visible/surface_inertia.h"
 
@@ -26,8 +27,7 @@ constexpr double kShapeApart = 0.5;
 constexpr double kTurnedApart = 0.7;
 
 double encoded(double linear) {
-    const double x = std::clamp(linear, 0.0, 1.0);
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+    return encode_srgb(std::clamp(linear, 0.0, 1.0));
 }
 
 glm::dvec4 look_of(const Material& material) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/baked_image.h"
 
+#include "base/color.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "image/texture_sampler.h"
@@ -169,7 +170,7 @@ Color result(const BakeStep& step, const std::vector<Color>& done) {
         case BakeOp::Channel:
             return Color(a[static_cast<int>(step.value.x)]);
         case BakeOp::Luma:
-            return Color(0.2126 * a.x + 0.7152 * a.y + 0.0722 * a.z);
+            return Color(luminance(glm::dvec3(a)));
         case BakeOp::Combine:
             return {a.x, b.y, c.z, 1};
         case BakeOp::Add:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/compare_images.h"
 
+#include "base/color.h"
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -66,8 +67,7 @@ Plane luma(const Image& image) {
     Plane out(image.size());
     for (size_t i = 0; i < out.size(); ++i) {
         const float* pixel = image.pixels.data() + 4 * i;
-        out[i] = 0.2126 * static_cast<double>(pixel[0]) + 0.7152 * static_cast<double>(pixel[1]) +
-                 0.0722 * static_cast<double>(pixel[2]);
+        out[i] = luminance(glm::dvec3(pixel[0], pixel[1], pixel[2]));
     }
     return out;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/image.h"
 
+#include "base/color.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "image/image_codecs.h"
@@ -20,14 +21,6 @@ unsigned char byte_of(float value) {
 }
 
 }  // namespace
-
-float encode_srgb(float linear) {
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-}
-
-float decode_srgb(float encoded) {
-    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
 
 Image blank_image(int64_t width, int64_t height, bool linear, const std::string& name) {
     // Law: kMostPixels as a signed number, for the comparison.

@@ -54,8 +54,4 @@ std::string png_bytes(const Image& image);
 /// to 0...1 (not a number: 0); another image stays as it is.
 Image encoded(const Image& image);
 
-/// The sRGB transfer functions (IEC 61966-2-1), for 0...1.
-float encode_srgb(float linear);
-float decode_srgb(float encoded);
-
 }  // namespace lodestone::image

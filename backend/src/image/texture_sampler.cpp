@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/texture_sampler.h"
 
+#include "base/color.h"
 #include "base/error.h"
 
 #include <glm/common.hpp>
@@ -66,7 +67,7 @@ double pick(TextureChannel channel, const glm::dvec4& texel) {
         case TextureChannel::Luma:
             break;
     }
-    return 0.2126 * texel.x + 0.7152 * texel.y + 0.0722 * texel.z;
+    return luminance(glm::dvec3(texel));
 }
 
 /// The facts about a picture that only decoding tells.

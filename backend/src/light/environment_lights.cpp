@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/environment_lights.h"
 
+#include "base/color.h"
 #include "base/maths.h"
 #include "image/texture_sampler.h"
 
@@ -34,10 +35,6 @@ constexpr int kSweeps = 200;
 // How much the fit is drawn to the strengths it starts from.
 // Taste: a larger number keeps them nearer; without it, suns side by side differ by chance.
 constexpr double kKeep = 1e-3;
-
-double luma(const glm::dvec3& color) {
-    return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
-}
 
 struct SkyTexel {
     glm::dvec3 direction{0.0};  // the direction in which it is seen, in the world
@@ -158,7 +155,7 @@ double brightness(EnvironmentSky& sky, const SkyRegion& region) {
     double sum = 0;
     for (int y = region.top; y < region.bottom; ++y) {
         for (int x = region.left; x < region.right; ++x)
-            sum += std::max(0.0, luma(sky.above(sky.at(x, y))));
+            sum += std::max(0.0, luminance(sky.above(sky.at(x, y))));
     }
     return sum;
 }
@@ -198,7 +195,7 @@ EnvironmentLight light_of(EnvironmentSky& sky, const SkyRegion& region) {
     for (int y = region.top; y < region.bottom; ++y) {
         for (int x = region.left; x < region.right; ++x) {
             const SkyTexel& texel = sky.at(x, y);
-            middle += texel.direction * std::max(0.0, luma(sky.above(sky.at(x, y))));
+            middle += texel.direction * std::max(0.0, luminance(sky.above(sky.at(x, y))));
             light.irradiance += sky.above(texel);
         }
     }
@@ -226,7 +223,7 @@ void spread(EnvironmentSky& sky, std::vector<EnvironmentLight>& lights) {
                     nearest[t] = i;
                 }
             }
-            middles[nearest[t]] += texel.direction * std::max(0.0, luma(sky.above(texel)));
+            middles[nearest[t]] += texel.direction * std::max(0.0, luminance(sky.above(texel)));
         }
         for (size_t i = 0; i < lights.size(); ++i) {
             if (glm::length(middles[i]) > 0)

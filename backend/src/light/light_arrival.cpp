@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/light_arrival.h"
 
+#include "base/color.h"
 #include "base/maths.h"
 
 #include <glm/common.hpp>
@@ -39,10 +40,6 @@ double in_spread(const Light& area, double cosine) {
 
 glm::dvec3 energy_of(const Light& light) {
     return light.color * light.power;
-}
-
-double luminance(const glm::dvec3& color) {
-    return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
 double extent_of(const Light& light) {
@@ -93,9 +90,9 @@ double display_step(double radiance) {
     // Law: one step of an 8-bit display.
     constexpr double kStep = 1.0 / 255;
     const double shown = std::min(radiance, 1.0);
-    if (!(shown > 0.0031308))
-        return kStep / 12.92;
-    return kStep * 2.4 / 1.055 * std::pow(shown, 1 - 1 / 2.4);
+    if (!(shown > kSrgbLinearEnd))
+        return kStep / kSrgbSlope;
+    return kStep * kSrgbPower / kSrgbScale * std::pow(shown, 1 - 1 / kSrgbPower);
 }
 
 }  // namespace lodestone::light

@@ -8,7 +8,6 @@ namespace lodestone::light {
 
 /// The color times the power, which add up when lights are joined.
 glm::dvec3 energy_of(const Light& light);
-double luminance(const glm::dvec3& color);
 
 /// The radius of the shining surface: 0 for a point without size; half the diagonal of an area.
 double extent_of(const Light& light);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "view/viewer_batches.h"
 
+#include "base/color.h"
 #include "image/image.h"
 #include "view/shown_mesh.h"
 
@@ -72,7 +73,7 @@ std::array<uint8_t, 4> displayed(const glm::dvec3& linear, double alpha) {
         return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255));
     };
     const auto encoded = [&](double value) {
-        return byte(image::encode_srgb(static_cast<float>(std::clamp(value, 0.0, 1.0))));
+        return byte(encode_srgb(static_cast<float>(std::clamp(value, 0.0, 1.0))));
     };
     return {encoded(linear.x), encoded(linear.y), encoded(linear.z), byte(alpha)};
 }

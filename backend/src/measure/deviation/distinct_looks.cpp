@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/deviation/distinct_looks.h"
 
+#include "base/color.h"
 #include "base/maths.h"
 
 #include <glm/common.hpp>
@@ -13,13 +14,11 @@ namespace lodestone::measure {
 namespace {
 
 double encode(double linear) {
-    const double x = std::clamp(linear, 0.0, 1.0);
-    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+    return encode_srgb(std::clamp(linear, 0.0, 1.0));
 }
 
 double decode(double encoded) {
-    const double x = std::clamp(encoded, 0.0, 1.0);
-    return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+    return decode_srgb(std::clamp(encoded, 0.0, 1.0));
 }
 
 /// The mean look of a material where nothing is looked up; materials that are mixed count as mixed.
