@@ -9,6 +9,7 @@
 #include "measure/deviation/surface_deviation.h"
 #include "measure/visible/visible_attributes.h"
 #include "model/representation.h"
+#include "povray_export/scene/povray_costs.h"
 #include "scenes/rematched_stand_ins.h"
 #include "simplify/simplify.h"
 #include "solids/composite_replacement.h"
@@ -94,8 +95,8 @@ double mesh_bytes_within(const std::vector<Mesh>& levels, const std::vector<doub
     double best = std::numeric_limits<double>::infinity();
     for (size_t i = 0; i < levels.size(); ++i) {
         if (errors[i] <= error)
-            best =
-                std::min(best, static_cast<double>(levels[i].triangles.size() * kBytesPerTriangle));
+            best = std::min(best, static_cast<double>(levels[i].triangles.size() *
+                                                      povray::povray_costs().triangle_bytes));
     }
     return best;
 }
@@ -242,7 +243,7 @@ void compare_shape(const std::filesystem::path& path, bool last) {
         found[name] = overlap(truth, silhouettes(solid, bound));
         measure_again(found, name, tessellate(level.composite, kSubdivisions), 1, known);
         const double error = reference.of(solid).error;
-        const auto bytes = static_cast<double>(count * kBytesPerPrimitive);
+        const auto bytes = static_cast<double>(count * povray::povray_costs().primitive_bytes);
         found[name + " error"] = error / bound.radius;
         const double other = mesh_bytes_within(levels, errors, error);
         found[name + " bytes over a mesh's"] = std::isfinite(other) ? bytes / other : 0;

@@ -35,7 +35,6 @@ ROOT = Path(__file__).resolve().parents[2]
 COPIES = {64: 2, 32: 4, 16: 6, 8: 8, 4: 12}  # along a side
 GAP = 1.17  # between copies, over their diameter; no whole number of pixels
 LEAST_TRIANGLES = 4
-TRIANGLE_BYTES, PLACED_BYTES = 245, 1500  # as representation.h has them
 FEWEST_PARTS = 8  # of a pruned mesh
 MOST_SAMPLES = 4
 MOST_OFF = 0.03  # of the light
@@ -179,7 +178,9 @@ class Sheet:
             self.describe(row, model, picked, copies, store, "glass" in joined.slots)
             if row.main != "original":
                 whole, mesh = self.model_of(joined)
-                budget = max(LEAST_TRIANGLES, (row.bytes - PLACED_BYTES) // TRIANGLE_BYTES)
+                costs = native.CostModel()
+                own = row.bytes - costs.occurrence_bytes
+                budget = max(LEAST_TRIANGLES, own // costs.triangle_bytes)
                 whole.simplify(native.SimplifyOptions(triangles=budget))
                 camera, pixels = self.shots.prepare(
                     whole, mesh, summary.radius, summary.center, size, longest
@@ -212,7 +213,7 @@ class Sheet:
             each = number / copies
             row.kinds[kind] = row.kinds.get(kind, 0) + round(each)
             row.triangles += round(made.triangles * each)
-            row.bytes += round(PLACED_BYTES * each)
+            row.bytes += round(native.CostModel().occurrence_bytes * each)
             if made.hash not in distinct or kind == "composite":
                 row.bytes += made.bytes * (round(each) if kind == "composite" else 1)
             distinct.add(made.hash)

@@ -5,6 +5,7 @@
 #include "base/files.h"
 #include "image/texture_sampler.h"
 #include "povray_export/run/povray_runner.h"
+#include "povray_export/scene/povray_costs.h"
 #include "povray_export/scene/scene_writer.h"
 #include "scenes/small_meshes.h"
 #include "scratch.h"
@@ -115,6 +116,7 @@ private:
         finest.summary.kind = kind;
         finest.payload = std::move(payload);
         finest.materials = std::move(materials);
+        model.costs = povray_costs();
         summarize(finest, model);
         object.representations = {finest};
         model.objects.push_back(object);

@@ -10,9 +10,11 @@ from types import SimpleNamespace
 
 import addon_path  # noqa: F401 - makes the add-on importable
 from lodestone.core.picture import cost_model
-from lodestone_native import Antialias, Camera
+from lodestone_native import Antialias, Camera, CostModel
 
-WORK = cost_model.Work(245_000_000, 1_000_000, 640 * 360, 640, 360, 1, 1, 2)
+WORK = cost_model.Work(
+    1_000_000 * CostModel().triangle_bytes, 1_000_000, 640 * 360, 640, 360, 1, 1, 2
+)
 CAMERA = Camera("C", False, (0, 0, 2), (0, 1, 0), (1, 0, 0), (0, 0, 0.5), 0.1, aperture=0.2)
 
 

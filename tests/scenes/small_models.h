@@ -4,12 +4,15 @@
 
 #include "image/texture_sampler.h"
 #include "model/model.h"
+#include "povray_export/scene/povray_costs.h"
 #include "scenes/small_meshes.h"
 
 namespace lodestone::models {
 
+/// The model is drawn by POV-Ray from then on.
 inline ObjectIndex add_leaf(Model& model, const std::string& uid, Mesh mesh, Material material = {},
                             ObjectRole role = ObjectRole::Automatic) {
+    model.costs = povray::povray_costs();
     Object object;
     object.uid = object.name = uid;
     object.role = role;

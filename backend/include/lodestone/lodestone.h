@@ -775,6 +775,17 @@ typedef struct lds_build_report {
     uint64_t left; /* objects still stale, because options.view does not need them */
 } lds_build_report;
 
+/* What drawing costs POV-Ray 3.7: what levels are built by (a store whose levels were built by other
+   costs is stale), and what the bytes and the times that are told count. */
+typedef struct lds_cost_model {
+    uint32_t struct_size;
+    uint64_t triangle_bytes;   /* of a mesh, however often it is drawn */
+    uint64_t primitive_bytes;  /* of a box, an ellipsoid, each solid of a composite */
+    uint64_t occurrence_bytes; /* of each occurrence, whatever it draws */
+    double parse_triangle_s;   /* CPU seconds to read a triangle */
+} lds_cost_model;
+LDS_API lds_status lds_cost_model_default(lds_cost_model* costs);
+
 /* What lds_model_build would do: fills objects, built, triangles and wall_s (an estimate). */
 LDS_API lds_status lds_model_build_estimate(lds_model* model, const char* store,
                                             const lds_build_options* options,

@@ -60,6 +60,7 @@ from .measure import surface_inertia
 from .model import Model, texture
 from .options import (
     BuildOptions,
+    CostModel,
     LooseOptions,
     MeasureOptions,
     SimplifyOptions,
@@ -89,6 +90,7 @@ __all__ = [
     "Camera",
     "Channel",
     "Choice",
+    "CostModel",
     "Criterion",
     "Cut",
     "Drawn",

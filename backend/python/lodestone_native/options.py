@@ -55,6 +55,14 @@ class SimplifyOptions(structs.SimplifyOptions):
         changed(self, changes)
 
 
+class CostModel(structs.CostModel):
+    """What drawing costs POV-Ray."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        check(library().lds_cost_model_default(self))
+
+
 class BuildOptions(structs.BuildOptions):
     """`scope`: a sequence of Objects; only what is reachable from them is built. `poses`: Models of
     the same scene in other frames, to be kept open for as long as the options are used. `view`: a

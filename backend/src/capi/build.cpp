@@ -3,6 +3,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "hierarchy/hierarchy_build.h"
+#include "povray_export/scene/povray_costs.h"
 
 #include <cmath>
 
@@ -68,6 +69,18 @@ lds_status lds_build_options_default(lds_build_options* options) {
         out.seed = settings.seed;
         out.share = hierarchy::BuildDemand().share;
         hand_out(options, out, "options");
+    });
+}
+
+lds_status lds_cost_model_default(lds_cost_model* costs) {
+    return guard([&] {
+        const CostModel known = povray::povray_costs();
+        lds_cost_model out{};
+        out.triangle_bytes = known.triangle_bytes;
+        out.primitive_bytes = known.primitive_bytes;
+        out.occurrence_bytes = known.occurrence_bytes;
+        out.parse_triangle_s = known.parse_triangle_s;
+        hand_out(costs, out, "costs");
     });
 }
 

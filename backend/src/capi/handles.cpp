@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "capi/guard.h"
+#include "povray_export/scene/povray_costs.h"
 
 #include <atomic>
 #include <cmath>
@@ -81,6 +82,7 @@ std::string name_of(const char* text) {
 lds_model* new_model() {
     static std::atomic<uint32_t> generations{0};
     auto model = std::make_unique<lds_model>();
+    model->model.costs = povray::povray_costs();
     do {
         model->generation = ++generations;
     } while (model->generation == 0);

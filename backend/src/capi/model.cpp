@@ -234,10 +234,14 @@ lds_status lds_model_read(const char* path, lds_model** out_model) {
         std::error_code error;
         if (file.filename() == "tileset.json" || std::filesystem::is_directory(file, error)) {
             model->store.emplace(file);
+            const CostModel costs = model->model.costs;
             model->model = model->store->read();
+            model->model.costs = costs;
             model->summarized = true;
         } else {
+            const CostModel costs = model->model.costs;
             model->model = format::read_model(file, model->problems);
+            set_costs(model->model, costs);
         }
         for (uint32_t i = 0; i < model->model.objects.size(); ++i)
             model->by_uid.emplace(model->model.objects[i].uid, i);

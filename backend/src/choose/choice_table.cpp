@@ -9,8 +9,6 @@
 namespace lodestone::choose {
 namespace {
 
-// The least cost of anything that is drawn: a primitive, placed once.
-constexpr uint64_t kLeastBytes = kBytesPerPrimitive + kBytesPerOccurrence;
 // How many groups deep the costs below a group are looked at for openings; deeper groups count as
 // closed.
 // Taste: a larger depth finds more openings and makes tables slower.
@@ -18,10 +16,6 @@ constexpr int kDeepestOpening = 3;
 // The most levels of an object.
 // Law: level_count is a bit field of 28 bits.
 constexpr uint32_t kMostLevels = (uint32_t{1} << 28u) - 1;
-
-double own_cost(const TableLevel& level) {
-    return static_cast<double>(level.bytes + kBytesPerOccurrence);
-}
 
 }  // namespace
 
@@ -166,6 +160,10 @@ void ChoiceTable::link() {
     }
 }
 
+double ChoiceTable::own_cost(const TableLevel& level) const {
+    return static_cast<double>(level.bytes + model_.costs.occurrence_bytes);
+}
+
 double ChoiceTable::stretch_of(const TableChild& child) const {
     return child.linear == kUnturned ? 1 : stretches_[child.linear];
 }
@@ -181,10 +179,13 @@ void ChoiceTable::set_openings(uint32_t row) {
         return;
     const std::vector<Placement>& placements =
         model_.objects[objects_[row].object].representations[0].assembly().placements;
+    const CostModel& costs = model_.costs;
+    // The least cost of anything that is drawn: a primitive, placed once.
+    const uint64_t least = costs.primitive_bytes + costs.occurrence_bytes;
     std::vector<double> steps;  // the errors at which a child changes its level
     for (uint32_t i = group.level_count; i-- > 0;) {
         const TableLevel level = levels_[group.first_level + i];
-        if (level.sealed || level.bytes + kBytesPerOccurrence <= kLeastBytes * placements.size())
+        if (level.sealed || level.bytes + costs.occurrence_bytes <= least * placements.size())
             continue;
         if (steps.empty()) {
             expand(row);

@@ -145,6 +145,8 @@ private:
 
     uint32_t add(ObjectIndex object);
     void link();
+    /// The bytes of one occurrence, with all of what it draws.
+    double own_cost(const TableLevel& level) const;
     double stretch_of(const TableChild& child) const;
     void set_openings(uint32_t row);
     double cost_at(uint32_t row, double error, int depth);

@@ -153,7 +153,8 @@ void CostSweep::count(const RangedNode& visited, const LevelRange& range, bool m
     if (range.low <= finest_) {
         certain_tally_.count(*range.level, more, certain_);
     } else if (visited.lasts) {
-        certain_.bytes += more ? kBytesPerOccurrence : -kBytesPerOccurrence;
+        const uint64_t bytes = table_.model().costs.occurrence_bytes;
+        certain_.bytes += more ? bytes : -bytes;
     }
 }
 

@@ -322,7 +322,7 @@ void CutChooser::push_children(const KnownObject& known, uint32_t index, double 
 void CutChooser::take(uint32_t index, const TableLevel& level, double shown_px) {
     cut_->chosen.push_back(index);
     cut_->triangles += level.triangles;
-    cut_->bytes += kBytesPerOccurrence;
+    cut_->bytes += table_.model().costs.occurrence_bytes;
     cut_->originals += level.lod == 0 ? 1 : 0;
     if (drawn_.size() <= level.distinct)
         drawn_.resize(std::max<size_t>(table_.distinct(), level.distinct + size_t{1}));

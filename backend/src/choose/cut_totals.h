@@ -18,6 +18,7 @@ public:
 private:
     std::vector<uint32_t> uses_;  // by TableLevel::distinct
     std::array<uint64_t, kKinds> kinds_{};
+    uint64_t occurrence_bytes_ = 0;
 };
 
 }  // namespace lodestone::choose

@@ -22,8 +22,8 @@ struct HairStrands {
 /// nothing. Bends of less than a quarter of the strand's radius are straightened.
 ///
 /// Why tubes and not POV-Ray's cones: all code that draws, measures, stores or views a mesh can use
-/// them, and a straight strand costs 4 or 8 triangles, about as much as one cone costs POV-Ray (245
-/// bytes each against 1,500). Why three sides: strands are a few pixels wide at most, normals make
+/// them, and a straight strand costs 4 or 8 triangles, about as much as one cone costs POV-Ray (a
+/// sixth of the bytes each). Why three sides: strands are a few pixels wide at most, normals make
 /// them look round, and the prism is widened so that its mean shadow over all directions is the
 /// cone's (Cauchy: a convex section of perimeter p is p / pi wide on average). Throws
 /// Error(InvalidArgument) when the arrays do not fit together or the mesh would be too large.

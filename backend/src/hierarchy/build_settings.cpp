@@ -3,7 +3,7 @@
 
 namespace lodestone::hierarchy {
 
-Hash hash_of(const BuildSettings& settings) {
+Hash hash_of(const BuildSettings& settings, const CostModel& costs) {
     constexpr uint32_t kAlgorithms = 27;  // raised whenever the same settings give other stand-ins
     return Hasher()
         .value(kAlgorithms)
@@ -12,6 +12,10 @@ Hash hash_of(const BuildSettings& settings) {
         .value(settings.samples)
         .value(settings.group_triangles)
         .value(settings.seed)
+        .value(costs.triangle_bytes)
+        .value(costs.primitive_bytes)
+        .value(costs.occurrence_bytes)
+        .value(costs.crossing_bytes)
         .result();
 }
 

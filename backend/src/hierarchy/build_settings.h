@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/hash.h"
+#include "model/cost_model.h"
 #include "model/object.h"
 #include "model/view.h"
 
@@ -51,7 +52,8 @@ struct BuildSettings {
     double keep_every_s = 20;
 };
 
-/// The hash of everything that changes a result, and of the version of the algorithms.
-Hash hash_of(const BuildSettings& settings);
+/// The hash of everything that changes a result, what drawing costs included, and of the version of
+/// the algorithms.
+Hash hash_of(const BuildSettings& settings, const CostModel& costs);
 
 }  // namespace lodestone::hierarchy

@@ -30,19 +30,18 @@ void come_to(StandInCandidate& candidate, CandidateState next) {
     candidate.state = next;
 }
 
-uint64_t bytes_of(const StandInCandidate& candidate) {
+uint64_t bytes_of(const StandInCandidate& candidate, const CostModel& costs) {
     switch (candidate.kind) {
         case Kind::Mesh:
-            return candidate.mesh->triangles.size() * kBytesPerTriangle;
+            return candidate.mesh->triangles.size() * costs.triangle_bytes;
         case Kind::Composite:
-            return candidate.composite->solids.size() * kBytesPerPrimitive;
+            return candidate.composite->solids.size() * costs.primitive_bytes;
         default:
-            return kBytesPerPrimitive;
+            return costs.primitive_bytes;
     }
 }
 
-double tracing_of(const StandInCandidate& candidate) {
-    constexpr double kBytesPerCrossing = 150;  // measured: see the header
+double tracing_of(const StandInCandidate& candidate, const CostModel& costs) {
     const auto clear_area = [&](const Primitive& primitive, bool box, uint16_t slot) {
         if (slot >= candidate.materials.size() || !(candidate.error > 0))
             return 0.0;
@@ -66,20 +65,21 @@ double tracing_of(const StandInCandidate& candidate) {
         return 0;
     // A convex surface shows a quarter of its area from any side, in the mean, and is crossed
     // twice.
-    return kBytesPerCrossing * 0.5 * area / (candidate.error * candidate.error);
+    return costs.crossing_bytes * 0.5 * area / (candidate.error * candidate.error);
 }
 
-double bytes_of(const StandInCandidate& candidate, uint64_t uses) {
+double bytes_of(const StandInCandidate& candidate, uint64_t uses, const CostModel& costs) {
     const auto count = static_cast<double>(std::max<uint64_t>(1, uses));
-    return count * (bytes_per_occurrence(candidate.kind, bytes_of(candidate), uses) +
-                    tracing_of(candidate));
+    return count * (bytes_per_occurrence(candidate.kind, bytes_of(candidate, costs), uses) +
+                    tracing_of(candidate, costs));
 }
 
-double bytes_within(const std::vector<StandInCandidate>& candidates, double error, uint64_t uses) {
+double bytes_within(const std::vector<StandInCandidate>& candidates, double error, uint64_t uses,
+                    const CostModel& costs) {
     double out = std::numeric_limits<double>::infinity();
     for (const StandInCandidate& candidate : candidates) {
         if (candidate.error <= error)
-            out = std::min(out, bytes_of(candidate, uses));
+            out = std::min(out, bytes_of(candidate, uses, costs));
     }
     return out;
 }

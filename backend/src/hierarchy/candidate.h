@@ -41,18 +41,16 @@ struct StandInCandidate {
 /// Brings a candidate to its next state. Throws Error: Internal, where may_follow() says no.
 void come_to(StandInCandidate& candidate, CandidateState next);
 
-/// The bytes of one in POV-Ray's memory.
-uint64_t bytes_of(const StandInCandidate& candidate);
-/// The time that tracing clear surfaces takes, over opaque ones: the bytes that POV-Ray reads in
-/// that time, for one occurrence where it is used first, as far away that its error is a pixel.
-/// Measured (POV-Ray 3.7, trees, hedges and fences of 4 to 32 clear solids): each surface that a
-/// sample crosses takes 1.7 to 2.4 microseconds, mostly of shadow rays, a byte of a mesh 15 ns to
-/// read.
-double tracing_of(const StandInCandidate& candidate);
+/// The bytes of one in the renderer's memory.
+uint64_t bytes_of(const StandInCandidate& candidate, const CostModel& costs);
+/// The time that tracing clear surfaces takes, over opaque ones: the bytes that the renderer reads
+/// in that time, for one occurrence where it is used first, as far away that its error is a pixel.
+double tracing_of(const StandInCandidate& candidate, const CostModel& costs);
 /// The bytes of all its occurrences together, tracing included.
-double bytes_of(const StandInCandidate& candidate, uint64_t uses);
+double bytes_of(const StandInCandidate& candidate, uint64_t uses, const CostModel& costs);
 
 /// The cheapest candidate within an error; infinite when there is none.
-double bytes_within(const std::vector<StandInCandidate>& candidates, double error, uint64_t uses);
+double bytes_within(const std::vector<StandInCandidate>& candidates, double error, uint64_t uses,
+                    const CostModel& costs);
 
 }  // namespace lodestone::hierarchy

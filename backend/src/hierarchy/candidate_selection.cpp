@@ -39,11 +39,13 @@ void paint_sides(StandInCandidate& candidate, const MeasuredFinest& finest) {
 }  // namespace
 
 void keep_pareto_front(std::vector<StandInCandidate>& candidates, uint64_t finest_bytes,
-                       uint64_t uses) {
+                       const CostModel& costs, uint64_t uses) {
     // A level that saves less than this over a better one is not worth its place on disk.
     // Taste: a larger value keeps fewer levels.
     constexpr double kSameCost = 1.02;
-    const auto bytes = [&](const StandInCandidate& candidate) { return bytes_of(candidate, uses); };
+    const auto bytes = [&](const StandInCandidate& candidate) {
+        return bytes_of(candidate, uses, costs);
+    };
     std::stable_sort(candidates.begin(), candidates.end(),
                      [&](const StandInCandidate& a, const StandInCandidate& b) {
                          return bytes(a) != bytes(b) ? bytes(a) < bytes(b) : a.error < b.error;

@@ -13,7 +13,7 @@ namespace lodestone::hierarchy {
 /// Sorts by cost and drops every candidate that is no better than a cheaper one (Pareto front of
 /// bytes and error), and those that cost no less than `finest_bytes`; with so many occurrences.
 void keep_pareto_front(std::vector<StandInCandidate>& candidates, uint64_t finest_bytes,
-                       uint64_t uses = 1);
+                       const CostModel& costs, uint64_t uses = 1);
 
 /// Drops what is of no use beside the others, and sorts what is left, finest first.
 using Keep = std::function<void(std::vector<StandInCandidate>&)>;

@@ -83,6 +83,7 @@ double error_to_flatten(OpenedGroup& group, uint64_t wanted, uint64_t most, cons
     // What is larger than this part of the size is not fine: what is measured against it would look
     // as far off. And what saves little is not worth an error: a roof of boxes stays one.
     constexpr int kLastFine = -5;
+    const CostModel& costs = group.model().costs;
     const double size = group.model().objects[group.index()].bound().radius;
     const double sharing = static_cast<double>(std::max<uint64_t>(1, group.uses()));
     const auto error_of = [&](int power) { return power < kFinest ? 0 : std::ldexp(size, power); };
@@ -94,8 +95,8 @@ double error_to_flatten(OpenedGroup& group, uint64_t wanted, uint64_t most, cons
     for (int power = kFinest - 1; power < kCoarsest; ++power) {
         const DrawnCosts drawn = drawn_at(power);
         const double stand_in =
-            static_cast<double>(drawn.triangles * kBytesPerTriangle) / (kJoined * sharing) +
-            static_cast<double>(kBytesPerOccurrence);
+            static_cast<double>(drawn.triangles * costs.triangle_bytes) / (kJoined * sharing) +
+            static_cast<double>(costs.occurrence_bytes);
         if (stand_in < drawn.bytes) {
             reference = std::min(reference, kFiner * error_of(power));
             break;

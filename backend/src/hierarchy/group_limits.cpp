@@ -111,19 +111,22 @@ GroupLimits::GroupLimits(OpenedGroup& group, const FlattenedGroup& reference,
       // A stand-in is off by as much as the reference or more, and no use where it costs more than
       // what the children use there.
       children_(group, reference.child_error, job),
-      limits_{shell_, {group.model().objects[group.index()].bound(), group.uses()}} {
+      limits_{shell_,
+              {group.model().objects[group.index()].bound(), group.uses(), group.model().costs}} {
     ReplacedObject& whole = limits_.whole;
-    whole.bytes = static_cast<double>(shell_.triangles.size() * kBytesPerTriangle);
-    whole.most = children_.bytes() - static_cast<double>(kBytesPerOccurrence);
+    const CostModel& costs = whole.costs;
+    whole.bytes = static_cast<double>(shell_.triangles.size() * costs.triangle_bytes);
+    whole.most = children_.bytes() - static_cast<double>(costs.occurrence_bytes);
     whole.many = reference.occurrences >= kManyChildren;
     const std::optional<size_t> ground =
         ground_of(group.model(), group.index(), surroundings.marked);
     whole.ground = ground.has_value();
     whole.cheaper_from = [this](double bytes) {
-        return children_.cheaper_from(bytes + static_cast<double>(kBytesPerOccurrence));
+        return children_.cheaper_from(bytes +
+                                      static_cast<double>(limits_.whole.costs.occurrence_bytes));
     };
     whole.pays = [this](double bytes, double error) { return pays(bytes, error); };
-    first_ = std::min(shell_.triangles.size(), triangles_for(whole.most, whole.uses));
+    first_ = std::min(shell_.triangles.size(), triangles_for(whole.most, whole.uses, costs));
     limits_.level_ratio = settings.level_ratio;
     limits_.targets = targets_of(shell_.triangles.size() + 1, first_, settings.level_ratio);
     const auto fifth =
@@ -138,8 +141,9 @@ GroupLimits::GroupLimits(OpenedGroup& group, const FlattenedGroup& reference,
         // The coarsest is what there is where nothing is of use.
         if (triangles <= coarsest)
             return std::numeric_limits<double>::infinity();
-        return limits_.whole.cheaper_from(
-            bytes_per_occurrence(Kind::Mesh, triangles * kBytesPerTriangle, limits_.whole.uses));
+        const ReplacedObject& group_as_whole = limits_.whole;
+        return group_as_whole.cheaper_from(bytes_per_occurrence(
+            Kind::Mesh, triangles * group_as_whole.costs.triangle_bytes, group_as_whole.uses));
     };
     limits_.find_crowd = [this] { return crowd_in(shell_, occurrence_); };
     for (const uint32_t one : reference.occurrence)
@@ -148,21 +152,22 @@ GroupLimits::GroupLimits(OpenedGroup& group, const FlattenedGroup& reference,
 }
 
 bool GroupLimits::pays(double bytes, double error) const {
-    return bytes + static_cast<double>(kBytesPerOccurrence) <
+    return bytes + static_cast<double>(limits_.whole.costs.occurrence_bytes) <
            group_.drawn_within(error, job_).bytes;
 }
 
 void GroupLimits::keep_useful(std::vector<StandInCandidate>& candidates) const {
+    const CostModel& costs = limits_.whole.costs;
     const RepresentationSummary& finest =
         group_.model().objects[group_.index()].representations.at(0).summary;
-    keep_pareto_front(candidates, finest.cost.bytes, group_.uses());
+    keep_pareto_front(candidates, finest.cost.bytes, costs, group_.uses());
     // Each is used from its own error to the next one's; what children cost is asked for half way,
     // on a scale of powers.
     double next = 0;  // 0: nothing is coarser
     for (size_t i = candidates.size(); i-- > 0;) {
-        const double own =
-            bytes_per_occurrence(candidates[i].kind, bytes_of(candidates[i]), group_.uses()) +
-            tracing_of(candidates[i]);
+        const double own = bytes_per_occurrence(candidates[i].kind, bytes_of(candidates[i], costs),
+                                                group_.uses()) +
+                           tracing_of(candidates[i], costs);
         const double error = candidates[i].error;
         if (pays(own, next > 0 ? std::sqrt(error * next) : error))
             next = error;

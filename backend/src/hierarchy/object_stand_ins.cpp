@@ -24,11 +24,12 @@ namespace {
 void seal(std::vector<StandInCandidate>& levels, OpenedGroup& group, const MeasuredFinest& finest,
           FinestPictures& pictures, const MeshSource& source, const Job& job) {
     constexpr double kFarthest = 4;  // over the radius: all children are as coarse as they get
+    const CostModel& costs = group.model().costs;
     double next = kFarthest * group.model().objects[group.index()].bound().radius;
     for (size_t i = levels.size(); i-- > 0;) {
         const double error = std::nextafter(std::max(next, levels[i].error), 0.0);
         next = levels[i].error;
-        const auto own = static_cast<double>(bytes_of(levels[i]) + kBytesPerOccurrence);
+        const auto own = static_cast<double>(bytes_of(levels[i], costs) + costs.occurrence_bytes);
         if (group.drawn_within(error, job).alone >= own)
             continue;
         const FlattenedGroup children = flatten_group(group, error, source, job);
@@ -43,7 +44,7 @@ std::vector<StandInCandidate> cheapest_of(ProposalRound& round) {
     std::vector<StandInCandidate> out;
     while (out.empty() && !round.candidates.empty()) {
         out = round.candidates;
-        keep_pareto_front(out, ~uint64_t{0});
+        keep_pareto_front(out, ~uint64_t{0}, round.limits.whole.costs);
         out = {out.back()};
         prove_candidates(out, round.candidates, round.finest, round.job);
     }
@@ -90,8 +91,8 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
     if (out.attributes.empty())
         return out;
 
-    ProposalLimits limits{*mesh, {original.bound, surroundings.uses[leaf]}};
-    limits.whole.bytes = static_cast<double>(mesh->triangles.size()) * kBytesPerTriangle;
+    ProposalLimits limits{*mesh, {original.bound, surroundings.uses[leaf], model.costs}};
+    limits.whole.bytes = static_cast<double>(mesh->triangles.size() * model.costs.triangle_bytes);
     limits.whole.most = bytes_per_occurrence(Kind::Mesh, original.cost.bytes, limits.whole.uses);
     limits.whole.ground = surroundings.ground[leaf] != 0;
     limits.level_ratio = settings.level_ratio;
@@ -103,7 +104,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
     propose(ProposalStage::All, round);
 
     const auto keep = [&](std::vector<StandInCandidate>& candidates) {
-        keep_pareto_front(candidates, original.cost.bytes, limits.whole.uses);
+        keep_pareto_front(candidates, original.cost.bytes, model.costs, limits.whole.uses);
     };
     round.candidates = select_candidates(round.candidates, keep, finest, pictures, job);
     settle_solids(round.candidates, finest, original.bound.box.low.z, job);

@@ -47,6 +47,7 @@ choose::Cut OpenedGroup::cut(double error, const Job& job) {
 DrawnCosts OpenedGroup::drawn_within(double error, const Job& job) {
     if (const auto known = drawn_.find(error); known != drawn_.end())
         return known->second;
+    const uint64_t placed = model().costs.occurrence_bytes;
     DrawnCosts drawn;
     const choose::Cut cut = this->cut(error, job);
     drawn.triangles = triangles_of(model(), cut);
@@ -54,9 +55,9 @@ DrawnCosts OpenedGroup::drawn_within(double error, const Job& job) {
         const choose::CutNode& node = cut.nodes[index];
         const RepresentationSummary& summary =
             model().objects[node.object].representations[node.lod].summary;
-        drawn.bytes += static_cast<double>(kBytesPerOccurrence) +
+        drawn.bytes += static_cast<double>(placed) +
                        bytes_per_occurrence(summary.kind, summary.cost.bytes, uses_[node.object]);
-        drawn.alone += static_cast<double>(kBytesPerOccurrence + summary.cost.bytes);
+        drawn.alone += static_cast<double>(placed + summary.cost.bytes);
     }
     drawn_.emplace(error, drawn);
     return drawn;

@@ -14,7 +14,7 @@ inline constexpr int kDrawnSubdivisions = 1;
 /// The costs of an occurrence of the group's children within an error.
 struct DrawnCosts {
     uint64_t triangles = 0;  // of the flat mesh
-    double bytes = 0;        // in POV-Ray
+    double bytes = 0;        // in the renderer
     double alone = 0;        // the same with all of each representation's: as the cut counts
 };
 

@@ -89,6 +89,32 @@ std::vector<uint8_t> that_hold(const Model& model, const Is& is) {
     return out;
 }
 
+DrawCost cost_of(const Representation& representation, const CostModel& costs) {
+    switch (representation.summary.kind) {
+        case Kind::Mesh: {
+            const uint64_t triangles = representation.mesh().triangles.size();
+            return {triangles, triangles * costs.triangle_bytes};
+        }
+        case Kind::Composite:
+            return {0, representation.composite().solids.size() * costs.primitive_bytes};
+        default:
+            return {0, costs.primitive_bytes};
+    }
+}
+
+DrawCost cost_of_children(const Representation& assembly, const Model& model) {
+    DrawCost sum;
+    for (const Placement& placement : assembly.assembly().placements) {
+        const Object& child = model.objects[placement.object];
+        if (child.representations.empty())
+            continue;
+        const DrawCost& part = child.representations[0].summary.cost;
+        sum.triangles = capped_sum(sum.triangles, part.triangles);
+        sum.bytes = capped_sum(sum.bytes, part.bytes);
+    }
+    return sum;
+}
+
 }  // namespace
 
 std::vector<ObjectIndex> bottom_up(const Model& model) {
@@ -133,12 +159,10 @@ void summarize(Representation& representation, const Model& model, std::optional
     if (summary.kind == Kind::Mesh) {
         const Mesh& mesh = representation.mesh();
         summary.bound = bound_of(mesh.positions);
-        summary.cost = {mesh.triangles.size(), mesh.triangles.size() * kBytesPerTriangle};
         hasher.value(mesh_hash ? *mesh_hash : hash_of(mesh));
     } else if (summary.kind == Kind::Composite) {
         const Composite& composite = representation.composite();
         summary.bound = bound_of(composite);
-        summary.cost = {0, composite.solids.size() * kBytesPerPrimitive};
         for (const Solid& solid : composite.solids)
             hasher.value(solid.box)
                 .bytes(&solid.primitive, sizeof solid.primitive)
@@ -147,12 +171,24 @@ void summarize(Representation& representation, const Model& model, std::optional
         const Primitive& primitive = representation.primitive();
         summary.bound =
             summary.kind == Kind::Box ? bound_of_box(primitive) : bound_of_ellipsoid(primitive);
-        summary.cost = {0, kBytesPerPrimitive};
         hasher.bytes(&primitive, sizeof primitive);
     }
+    summary.cost = cost_of(representation, model.costs);
     for (const uint32_t material : representation.materials)
         hasher.value(hash_of(model.materials.at(material)));
     summary.hash = hasher.result();
+}
+
+void set_costs(Model& model, const CostModel& costs) {
+    model.costs = costs;
+    for (const ObjectIndex index : bottom_up(model)) {
+        for (Representation& representation : model.objects[index].representations) {
+            if (representation.summary.kind == Kind::Assembly)
+                representation.summary.cost = cost_of_children(representation, model);
+            else if (representation.resident())
+                representation.summary.cost = cost_of(representation, costs);
+        }
+    }
 }
 
 void set_demands(Model& model, const std::vector<ObjectIndex>& order) {
@@ -184,7 +220,6 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
         if (object.group()) {
             RepresentationSummary& summary = finest.summary;
             summary.bound = Bound{};
-            summary.cost = DrawCost{};
             Hasher content;
             content.value(summary.kind);
             for (const Placement& placement : finest.assembly().placements) {
@@ -198,9 +233,8 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
                     continue;
                 const RepresentationSummary& part = child.representations[0].summary;
                 summary.bound = merged(summary.bound, transformed(part.bound, placement.transform));
-                summary.cost.triangles = capped_sum(summary.cost.triangles, part.cost.triangles);
-                summary.cost.bytes = capped_sum(summary.cost.bytes, part.cost.bytes);
             }
+            summary.cost = cost_of_children(finest, model);
             summary.hash = content.result();
         }
         object.source_hash = hasher.value(finest.summary.hash).result();

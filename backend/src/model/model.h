@@ -2,6 +2,7 @@
 // Model: objects, materials, lights and cameras; a DAG rooted in one object.
 #pragma once
 
+#include "model/cost_model.h"
 #include "model/material.h"
 #include "model/object.h"
 #include "model/view.h"
@@ -18,6 +19,7 @@ struct Model {
     std::vector<Camera> cameras;
     World world;
     ObjectIndex root = kNoObject;
+    CostModel costs;  // of the renderer that draws it
 };
 
 /// Objects reachable from the root, children before parents, each once. Throws
@@ -45,6 +47,9 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order);
 /// `mesh_hash`: of the mesh, where it is known already.
 void summarize(Representation& representation, const Model& model,
                std::optional<Hash> mesh_hash = std::nullopt);
+
+/// Gives the model another renderer's costs, and prices every resident representation by them.
+void set_costs(Model& model, const CostModel& costs);
 
 /// Number of leaf occurrences below the root (each path of placements counts), and what they place.
 /// Sums that would be more than 64 bits hold are the largest number.

@@ -34,17 +34,10 @@ constexpr KindMask mask_of(Kind kind) {
 }
 inline constexpr KindMask kAllKinds = ~KindMask{0};
 
-/// What POV-Ray 3.7 keeps (measured): for a triangle of a mesh with or without normals, for a
-/// primitive, and for each occurrence, whatever it draws. Meshes are shared between occurrences,
-/// the solids of a composite are copied for each.
-inline constexpr uint64_t kBytesPerTriangle = 245;
-inline constexpr uint64_t kBytesPerPrimitive = 1500;
-inline constexpr uint64_t kBytesPerOccurrence = 1500;
-
 /// What drawing it once costs a consumer that shares it between occurrences.
 struct DrawCost {
     uint64_t triangles = 0;  // of the mesh; an assembly: of all it places; a primitive: 0
-    uint64_t bytes = 0;      // in POV-Ray's memory, for one distinct representation
+    uint64_t bytes = 0;      // in the renderer's memory, for one distinct representation
 };
 
 struct RepresentationSummary {

@@ -93,8 +93,8 @@ TEST(ChoiceTable, KeepsAllToTheLastBitAlthoughItIsPacked) {
 }
 
 TEST(ChoiceTable, OpensADearStandInFromTheErrorOnAtWhichItsChildrenCostLess) {
-    // Two balls at LOD 2 (20 triangles, .2 m) cost 2 (20 * 245 + 1500) = 12,800 bytes, at LOD 1
-    // 42,200; a stand-in of 80 triangles and .15 m costs 21,100.
+    // Two balls at LOD 2 (20 triangles, 0.2 m) cost 2 (20 * 245 + 1500) = 12,800 bytes, at LOD 1
+    // 42,200; a stand-in of 80 triangles and 0.15 m costs 21,100.
     Model model = models::row_of_balls(2);
     models::add_level(model, bent::kBall, 0.1, shapes::sphere(1, 1));
     models::add_level(model, bent::kBall, 0.2, shapes::sphere(1, 0));
@@ -153,8 +153,8 @@ TEST(ChoiceTable, NothingIsOpenedInVain) {
                 const choose::CutNode& node = cut.nodes[at];
                 const Object& object = model.objects[node.object];
                 if (!node.opened)
-                    below[at] =
-                        object.representations[node.lod].summary.cost.bytes + kBytesPerOccurrence;
+                    below[at] = object.representations[node.lod].summary.cost.bytes +
+                                model.costs.occurrence_bytes;
                 const auto index = static_cast<uint32_t>(at);
                 if (node.opened) {
                     const choose::ChoiceReason reason =
@@ -166,7 +166,7 @@ TEST(ChoiceTable, NothingIsOpenedInVain) {
                                                  reason.chosen.total))
                             continue;
                         EXPECT_GT(children[at], 0u);
-                        EXPECT_LT(below[at], summary.cost.bytes + kBytesPerOccurrence);
+                        EXPECT_LT(below[at], summary.cost.bytes + model.costs.occurrence_bytes);
                         break;
                     }
                 }

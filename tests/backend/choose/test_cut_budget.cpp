@@ -48,7 +48,7 @@ TEST(CutBudget, FindsTheLeastThresholdThatFits) {
 TEST(CutBudget, CountsBytesAsPovRayKeepsThem) {
     // 20 triangles once and 1,500 bytes for each of four balls.
     const Model model = bent::pairs();
-    const uint64_t bytes = 20 * kBytesPerTriangle + 4 * kBytesPerOccurrence;
+    const uint64_t bytes = 20 * model.costs.triangle_bytes + 4 * model.costs.occurrence_bytes;
     const choose::BudgetedCut found = choose::fit_cut_to_budget(model, from(301), {0, bytes});
     EXPECT_EQ(found.cut.bytes, bytes);
     EXPECT_NEAR(found.pixel_error, 0.2 * 640 / 300, 1e-12);

@@ -6,6 +6,7 @@
 #include "hierarchy/hierarchy_build.h"
 #include "hierarchy/object_stand_ins.h"
 #include "measure/visible/visible_attributes.h"
+#include "povray_export/scene/povray_costs.h"
 #include "ray/mesh_scene.h"
 #include "scenes/built_models.h"
 #include "scenes/leaf_cards.h"
@@ -90,6 +91,7 @@ void expect_see_through_levels(const Model& model, ObjectIndex index) {
 
 TEST_F(Foliage, TreeOfLeafCardsHasSeeThroughLevelsAndBlobsOnlyFarAway) {
     Model model;
+    model.costs = povray::povray_costs();
     model.root = add_tree(model, 300, 24);
     build_in(model, "tree");
     const Object& tree = model.objects[model.root];
@@ -103,6 +105,7 @@ TEST_F(Foliage, TreeOfLeafCardsHasSeeThroughLevelsAndBlobsOnlyFarAway) {
 
 TEST_F(Foliage, TreeOfManyLeavesIsPrunedNearByAndAFewSolidsFarAway) {
     Model model;
+    model.costs = povray::povray_costs();
     model.root = models::add_leaf(model, "tree", foliage::tree(1500),
                                   models::colored("bark", {0.2, 0.1, 0.05}));
     Representation& finest = model.objects[model.root].representations[0];
@@ -128,6 +131,7 @@ TEST_F(Foliage, TreeOfManyLeavesIsPrunedNearByAndAFewSolidsFarAway) {
 
 TEST_F(Foliage, WoodHasAStandInThatOneCanSeeThrough) {
     Model model;
+    model.costs = povray::povray_costs();
     const ObjectIndex tree = add_tree(model, 60, 16);
     std::vector<Placement> placements;
     placements.reserve(9);
@@ -144,6 +148,7 @@ TEST_F(Foliage, WoodHasAStandInThatOneCanSeeThrough) {
 
 TEST_F(Foliage, GlassHasNoSolidStandIn) {
     Model model;
+    model.costs = povray::povray_costs();
     Material glass = models::colored("glass", {1, 1, 1});
     glass.transmission = 1;
     model.root = models::add_leaf(model, "ball", shapes::sphere(1, 4), glass);
@@ -166,6 +171,7 @@ TEST_F(Foliage, ObjectsOfOneAtlasGetTheColorsOfTheirParts) {
     material.base_color = glm::dvec3(atlas->mean);
     material.base_color_texture = foliage::texture(atlas);
     Model model;
+    model.costs = povray::povray_costs();
     for (const bool left : {true, false}) {
         Mesh ball = shapes::sphere(1, 4);
         for (glm::vec3& p : ball.positions) {
@@ -194,6 +200,7 @@ TEST(Flatten, MeshWithoutCoordinatesKeepsItsMeanBesideOneThatHasSome) {
     Material shared = foliage::leaf(half);
     shared.other = std::make_shared<const Material>(shared);
     Model model;
+    model.costs = povray::povray_costs();
     models::add_leaf(model, "card", foliage::card(1, 1), shared);
     models::add_leaf(model, "bare", shapes::quad(1, 1));
     model.objects[1].representations[0].materials = {0};
@@ -220,6 +227,7 @@ TEST(Candidates, WhatIsClearCostsWhatTracingItTakesAndIsNoUseBesideASharedMesh) 
     StandInCandidate mesh;
     mesh.mesh = std::make_shared<const Mesh>(shapes::sphere(1, 3));  // 1280 triangles
     mesh.error = 0.1;
+    const CostModel costs = povray::povray_costs();
     StandInCandidate clear;
     clear.kind = Kind::Composite;
     Composite solids;
@@ -229,21 +237,21 @@ TEST(Candidates, WhatIsClearCostsWhatTracingItTakesAndIsNoUseBesideASharedMesh) 
     clear.composite = std::make_shared<const Composite>(solids);
     clear.materials.resize(1);
     clear.error = 0.15;
-    EXPECT_EQ(hierarchy::tracing_of(clear), 0) << "opaque";
-    EXPECT_EQ(hierarchy::tracing_of(mesh), 0);
+    EXPECT_EQ(hierarchy::tracing_of(clear, costs), 0) << "opaque";
+    EXPECT_EQ(hierarchy::tracing_of(mesh, costs), 0);
     clear.materials[0].alpha_mode = AlphaMode::Blend;
     clear.materials[0].alpha = 0.4;
-    const double once = hierarchy::tracing_of(clear);
+    const double once = hierarchy::tracing_of(clear, costs);
     EXPECT_NEAR(once, 150 * 0.5 * 8 * 3.14159265 / (0.15 * 0.15), 1e-3 * once);
     clear.error *= 2;
-    EXPECT_NEAR(hierarchy::tracing_of(clear), once / 4, 1e-9 * once);
+    EXPECT_NEAR(hierarchy::tracing_of(clear, costs), once / 4, 1e-9 * once);
     clear.error /= 2;
     for (const uint64_t uses : {1, 100}) {
         std::vector<StandInCandidate> both{mesh, clear};
-        hierarchy::keep_pareto_front(both, 100000000, uses);
+        hierarchy::keep_pareto_front(both, 100000000, costs, uses);
         EXPECT_EQ(both.size(), uses == 1 ? 2u : 1u);
         EXPECT_EQ(both[0].kind, Kind::Mesh);
     }
     clear.error = 0;
-    EXPECT_EQ(hierarchy::tracing_of(clear), 0);
+    EXPECT_EQ(hierarchy::tracing_of(clear, costs), 0);
 }

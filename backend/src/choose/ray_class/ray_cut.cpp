@@ -283,7 +283,7 @@ private:
         const auto add = [&](const Representation& met) {
             ++out.met;
             out.triangles += met.summary.cost.triangles;
-            out.bytes += kBytesPerOccurrence;
+            out.bytes += model_.costs.occurrence_bytes;
             if (drawn.insert(met.summary.hash).second || met.summary.kind == Kind::Composite)
                 out.bytes += met.summary.cost.bytes;
         };
@@ -354,7 +354,7 @@ ResidentSize resident_size(const Model& model, const Cut& cut, const std::vector
         const RepresentationSummary& summary =
             model.objects[node.object].representations[lod].summary;
         out.triangles += summary.cost.triangles;
-        out.bytes += kBytesPerOccurrence;
+        out.bytes += model.costs.occurrence_bytes;
         if (drawn.insert(summary.hash).second || summary.kind == Kind::Composite)
             out.bytes += summary.cost.bytes;
     };

@@ -27,7 +27,7 @@ size_t most_solids(const std::vector<StandInCandidate>& candidates, const Replac
     const double used = std::isfinite(next) ? std::sqrt(least * std::max(next, least)) : least;
     size_t out = kMost;
     const auto useless = [&](size_t solids) {
-        const auto bytes = static_cast<double>(solids * kBytesPerPrimitive);
+        const auto bytes = static_cast<double>(solids * whole.costs.primitive_bytes);
         return bytes > whole.most || (whole.cheaper_from && whole.cheaper_from(bytes) <= used);
     };
     while (out > 0 && useless(out))
@@ -49,10 +49,10 @@ StandInCandidate candidate_of(const solids::ClusteredComposite& level) {
 /// whole.
 bool would_pay(const StandInCandidate& composite, double error,
                const std::vector<StandInCandidate>& others, const ReplacedObject& whole) {
-    const double own = bytes_of(composite, whole.uses);
+    const double own = bytes_of(composite, whole.uses, whole.costs);
     double next = std::numeric_limits<double>::infinity();  // the cheaper one that takes over
     for (const StandInCandidate& other : others) {
-        if (bytes_of(other, whole.uses) <= own)
+        if (bytes_of(other, whole.uses, whole.costs) <= own)
             next = std::min(next, other.error);
     }
     if (error >= next)
@@ -60,7 +60,7 @@ bool would_pay(const StandInCandidate& composite, double error,
     if (!whole.cheaper_from)
         return true;
     const double used = std::isfinite(next) ? std::sqrt(error * next) : error;
-    return whole.cheaper_from(static_cast<double>(bytes_of(composite))) > used;
+    return whole.cheaper_from(static_cast<double>(bytes_of(composite, whole.costs))) > used;
 }
 
 /// `airy`: clear ones too, of these parts, of at most so many solids.
@@ -141,11 +141,12 @@ void propose_composites(ProposalRound& round) {
     if (round.finest.options.environment || whole.ground)
         return;
     const double solids = round.by_pictures ? kSolidsByPictures : kSolidsByDistance;
-    const double dearer =
-        solids * kBytesPerPrimitive * static_cast<double>(std::max<uint64_t>(1, whole.uses));
+    const double dearer = solids * static_cast<double>(whole.costs.primitive_bytes) *
+                          static_cast<double>(std::max<uint64_t>(1, whole.uses));
     const size_t most = most_solids(round.candidates, whole);
     if (most < kFewest || round.finest.refracts() || !(whole.bytes > 2 * dearer) ||
-        !(bytes_within(round.candidates, kOff * whole.bound.radius, whole.uses) > dearer))
+        !(bytes_within(round.candidates, kOff * whole.bound.radius, whole.uses, whole.costs) >
+          dearer))
         return;
     round.pictures.take(round.limits.mesh, measure::AgreementReference::kCoarseSide, round.job);
     add_composites(round.candidates, round.limits.mesh, round.by_pictures,

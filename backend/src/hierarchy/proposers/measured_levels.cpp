@@ -23,7 +23,7 @@ double nearest_of_use(const ProposalRound& round) {
     const bool used =
         std::isfinite(out) &&
         (!whole.pays ||
-         whole.pays(bytes_per_occurrence(Kind::Box, kBytesPerPrimitive, whole.uses), out));
+         whole.pays(bytes_per_occurrence(Kind::Box, whole.costs.primitive_bytes, whole.uses), out));
     return used ? out : std::numeric_limits<double>::infinity();
 }
 

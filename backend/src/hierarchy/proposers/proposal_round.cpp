@@ -5,9 +5,10 @@
 
 namespace lodestone::hierarchy {
 
-size_t triangles_for(double bytes, uint64_t uses) {
+size_t triangles_for(double bytes, uint64_t uses, const CostModel& costs) {
     const double all = bytes * static_cast<double>(std::max<uint64_t>(1, uses));
-    return static_cast<size_t>(std::clamp(all / kBytesPerTriangle, 0.0, 1e9));
+    return static_cast<size_t>(
+        std::clamp(all / static_cast<double>(costs.triangle_bytes), 0.0, 1e9));
 }
 
 bool is_foliage(const prune::Crowd& crowd) {
@@ -27,8 +28,8 @@ ProposalRound::ProposalRound(const MeasuredFinest& original, FinestPictures& tak
     // Taste: a larger number compares pictures of fewer things.
     constexpr double kFewSolids = 32;
     const ReplacedObject& whole = limits.whole;
-    if (finest.options.environment || !(whole.bytes > kFewSolids * kBytesPerPrimitive) ||
-        finest.refracts())
+    const double least = kFewSolids * static_cast<double>(whole.costs.primitive_bytes);
+    if (finest.options.environment || !(whole.bytes > least) || finest.refracts())
         return;
     if (limits.find_crowd)
         crowd = limits.find_crowd();

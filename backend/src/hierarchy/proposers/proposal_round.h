@@ -23,7 +23,7 @@ inline constexpr double kNear = 1.0 / 8;
 inline constexpr double kOff = 0.2;
 
 /// Triangles of a mesh that costs so many bytes for each of its occurrences.
-size_t triangles_for(double bytes, uint64_t uses);
+size_t triangles_for(double bytes, uint64_t uses, const CostModel& costs);
 
 /// Whether a crowd is many parts of a few triangles each: how far their points are from those of
 /// fewer tells little.
@@ -33,6 +33,7 @@ bool is_foliage(const prune::Crowd& crowd);
 struct ReplacedObject {
     Bound bound;
     uint64_t uses = 1;
+    CostModel costs = {};
     double bytes = 0;     // as one mesh
     double most = 0;      // bytes of an occurrence that are no use any more
     bool many = false;    // its parts are objects

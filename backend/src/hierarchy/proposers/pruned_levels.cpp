@@ -249,16 +249,16 @@ void propose_pruned_levels(ProposalRound& round) {
     const ReplacedObject& whole = round.limits.whole;
     if (round.crowd.empty())
         return;
-    const bool dear = bytes_within(round.candidates, kNear * whole.bound.radius, whole.uses) >
-                      kCollapsed * whole.bytes;
+    const bool dear = bytes_within(round.candidates, kNear * whole.bound.radius, whole.uses,
+                                   whole.costs) > kCollapsed * whole.bytes;
     round.pruned = whole.many || is_foliage(round.crowd) || dear;
     if (!round.pruned)
         return;
     round.by_pictures = true;
     round.pictures.take(round.limits.mesh, measure::AgreementReference::kSide, round.job);
     add_pruned_levels(round.candidates, round.limits.mesh, round.crowd, round.limits.level_ratio,
-                      triangles_for(whole.most, whole.uses), round.finest, round.pictures,
-                      round.job);
+                      triangles_for(whole.most, whole.uses, whole.costs), round.finest,
+                      round.pictures, round.job);
 }
 
 }  // namespace lodestone::hierarchy

@@ -21,7 +21,6 @@ constexpr uint64_t kLeastTriangles = 12;
 struct PictureNeed {
     double error = -1;   // the least error any of its occurrences allows, metres; < 0: none shown
     uint64_t below = 0;  // groups: occurrences drawn for it
-    double seconds() const { return static_cast<double>(below) * kSecondsPerOccurrence; }
 };
 
 double triangles_within(double size, double error) {
@@ -66,9 +65,11 @@ public:
         const Object& object = model_.objects[index];
         const double wanted = triangles_within(object.bound().radius, shown.error);
         if (object.group())
-            return wanted < static_cast<double>(group_triangles) ? shown.seconds() : 0;
+            return wanted < static_cast<double>(group_triangles)
+                       ? static_cast<double>(shown.below) * model_.costs.occurrence_s
+                       : 0;
         const double has = static_cast<double>(object.representations[0].summary.cost.triangles);
-        return std::max(0.0, has - wanted) * kSecondsPerTriangle;
+        return std::max(0.0, has - wanted) * model_.costs.triangle_s;
     }
 
     /// Whether all that a group places has its stand-ins, or will have.

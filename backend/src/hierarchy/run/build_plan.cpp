@@ -52,7 +52,7 @@ std::vector<bool> within(const std::vector<ObjectIndex>& scope, const Model& mod
 BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
                      const StandInSurroundings& surroundings, const StoredStandIns& shelf,
                      const BuildSettings& settings) {
-    const Hash of_settings = hash_of(settings);
+    const Hash of_settings = hash_of(settings, model.costs);
     std::vector<bool> inside = within(settings.scope, model, order);
     // What is another group moved has the levels of that one, whichever of them is stale: so an
     // early partial build comes to the same as a whole one.

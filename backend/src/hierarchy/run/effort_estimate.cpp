@@ -10,8 +10,6 @@ namespace {
 // Measured on the sample scenes; they need not be right by more than a factor of two.
 constexpr double kBuiltTrianglesPerSecond = 150000;
 constexpr double kSecondsPerObject = 0.02;  // its rays and samples
-constexpr double kSecondsPerPixel = 1e-5;   // of a picture with a few lights
-constexpr double kSecondsToStart = 0.2;     // POV-Ray, and the empty scene
 
 }  // namespace
 
@@ -34,9 +32,9 @@ double seconds_to_draw(const Model& model, const choose::Cut& cut, const View& v
     }
     const double pixels = view.border ? double(view.border->width) * view.border->height
                                       : double(view.width) * view.height;
-    return kSecondsToStart + kSecondsPerTriangle * static_cast<double>(triangles) +
-           kSecondsPerOccurrence * static_cast<double>(cut.chosen.size()) +
-           kSecondsPerPixel * pixels;
+    return model.costs.start_s + model.costs.triangle_s * static_cast<double>(triangles) +
+           model.costs.occurrence_s * static_cast<double>(cut.chosen.size()) +
+           model.costs.pixel_s * pixels;
 }
 
 }  // namespace lodestone::hierarchy

@@ -11,12 +11,7 @@ namespace lodestone::hierarchy {
 /// CPU seconds to make the stand-ins of one object.
 double seconds_to_build(const Object& object, const BuildSettings& settings);
 
-/// CPU seconds that a picture saves in POV-Ray for each triangle it need not read, and for each
-/// occurrence it need not place.
-inline constexpr double kSecondsPerTriangle = 2e-6;
-inline constexpr double kSecondsPerOccurrence = 2e-5;
-
-/// CPU seconds of a picture in POV-Ray.
+/// CPU seconds that the model's renderer takes for a picture.
 double seconds_to_draw(const Model& model, const choose::Cut& cut, const View& view);
 
 }  // namespace lodestone::hierarchy

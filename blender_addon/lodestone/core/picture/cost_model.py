@@ -2,16 +2,17 @@
 """The time and the memory that a picture will take, told before it is rendered and corrected by the
 one before.
 
-POV-Ray 3.7 reads about 245 bytes of its memory in 5.2 microseconds; a sample takes longer with the
-fifth root of the triangles and with each lamp (measured on one machine; cost.json beside the levels
-keeps by how much the last picture differed). Bounces gather light by rays at places as dense as
-their error asks for, and again from what these meet.
+POV-Ray reads its memory in a time that the library knows; a sample takes longer with the fifth
+root of the triangles and with each lamp (measured on one machine; cost.json beside the levels keeps
+by how much the last picture differed). Bounces gather light by rays at places as dense as their
+error asks for, and again from what these meet.
 """
 
 import json
 import math
 import os
 from dataclasses import asdict, dataclass, fields
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,6 @@ from ..native import lodestone_native as native
 from .quality_tree import Quality
 
 FILE = "cost.json"
-_PARSE_S_PER_BYTE = 5.2e-6 / 245
 _SAMPLE_S = 1.65e-7
 _LAMP_SHARE = 0.5
 _GATHERED = 0.1  # places a pixel where light is gathered, at an error of 1
@@ -106,8 +106,14 @@ def gathering(bounces: int, rays: int, error: float) -> float:
     return _GATHERED / error**2 * rays * bounces
 
 
+@lru_cache(maxsize=None)
+def _parse_s_per_byte() -> float:
+    costs = native.CostModel()
+    return float(costs.parse_triangle_s / costs.triangle_bytes)
+
+
 def predict(work: Work, ratios: Ratios = Ratios()) -> Prediction:
-    parse = work.bytes * _PARSE_S_PER_BYTE * ratios.parse
+    parse = work.bytes * _parse_s_per_byte() * ratios.parse
     each = _SAMPLE_S * max(1, work.triangles) ** 0.2 * (1.0 + _LAMP_SHARE * work.lights)
     samples = (_BLURRED if work.blurred else _SAMPLES)[work.antialias] + work.gathering
     trace = work.pixels * samples * each * ratios.trace

@@ -136,7 +136,7 @@ TEST(RayCut, AFloatingBallThrowsTheShadowOfAnEllipsoidInsideIt) {
     // Both are in memory
     const choose::ResidentSize both = choose::resident_size(model, cut, {rays});
     EXPECT_EQ(both.triangles, cut.triangles);
-    EXPECT_EQ(both.bytes, cut.bytes + kBytesPerOccurrence + kBytesPerPrimitive);
+    EXPECT_EQ(both.bytes, cut.bytes + model.costs.occurrence_bytes + model.costs.primitive_bytes);
 }
 
 TEST(RayCut, WhatTouchesSomethingThrowsItsOwnShadow) {

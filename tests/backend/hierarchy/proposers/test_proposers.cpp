@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "hierarchy/proposers/collapse_levels.h"
 #include "hierarchy/proposers/proposers.h"
+#include "povray_export/scene/povray_costs.h"
 #include "scenes/leaf_cards.h"
 #include "scenes/small_models.h"
 #include "scenes/with_rays.h"
@@ -32,7 +33,9 @@ protected:
         finest_.emplace(
             hierarchy::measure_finest(mesh_, materials_, texels_, settings_, options, {}));
         limits_.emplace(hierarchy::ProposalLimits{mesh_, {bound_of(mesh_.positions)}});
-        limits_->whole.bytes = static_cast<double>(mesh_.triangles.size()) * kBytesPerTriangle;
+        const CostModel costs = povray::povray_costs();
+        limits_->whole.costs = costs;
+        limits_->whole.bytes = static_cast<double>(mesh_.triangles.size() * costs.triangle_bytes);
         limits_->whole.most = limits_->whole.bytes;
         limits_->targets = hierarchy::targets_of(mesh_, settings_);
         limits_->told = hierarchy::kOff * limits_->whole.bound.radius;

@@ -2,6 +2,7 @@
 // Guards posts that are thinner than a pixel: from afar they are clear boxes as wide as one.
 #include "hierarchy/proposers/widened_levels.h"
 #include "measure/visible/visible_attributes.h"
+#include "povray_export/scene/povray_costs.h"
 #include "scenes/built_models.h"
 #include "scenes/small_models.h"
 #include "scenes/street_lamps.h"
@@ -120,7 +121,7 @@ TEST_F(Widen, AnOpaquePostOfALevelIsDrawnAsWideAsTheErrorAndAsClear) {
         EXPECT_NEAR(bound.box.high.z, 2.8, 0.02);
         EXPECT_GE(made[i].error, 0.25);
         EXPECT_GE(made[i].error, 0.5 * width);
-        EXPECT_GT(tracing_of(made[i]), 0);
+        EXPECT_GT(tracing_of(made[i], povray::povray_costs()), 0);
     }
     EXPECT_LT(made[0].error, made[1].error);
     EXPECT_GT(made[0].materials[3].alpha, made[1].materials[3].alpha);
@@ -209,6 +210,7 @@ TEST_F(Widen, PostsWithoutThicknessAreNoTrouble) {
 
 TEST_F(Widen, ARowOfLampsSharesClearLevelsOfRisingErrorAndNoMoreTriangles) {
     Model model;
+    model.costs = povray::povray_costs();
     const ObjectIndex leaf = models::add_leaf(model, "lamp", lamp(), materials()[kPost]);
     Representation& finest = model.objects[leaf].representations[0];
     for (const uint16_t slot : {kGlass, kBulb}) {
