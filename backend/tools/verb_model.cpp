@@ -80,23 +80,6 @@ void set_target(const CommandArguments& arguments, lds_simplify_options& options
     }
 }
 
-const char* kind_name(int32_t kind) {
-    switch (kind) {
-        case LDS_KIND_MESH:
-            return "mesh";
-        case LDS_KIND_BOX:
-            return "box";
-        case LDS_KIND_ELLIPSOID:
-            return "ellipsoid";
-        case LDS_KIND_COMPOSITE:
-            return "composite";
-        case LDS_KIND_ASSEMBLY:
-            return "assembly";
-        default:
-            return "unknown";
-    }
-}
-
 lds_object object_at(const lds_model* model, size_t position) {
     lds_object object{};
     check(lds_model_object_at(model, position, &object));
@@ -291,10 +274,10 @@ int run_info(const CommandArguments& arguments) {
             check(lds_model_representation(model.get(), object, lod, &level));
             if (i < most)
                 std::printf("  LOD %-2u %-9s %10llu triangles  %12.6g mm\n", lod,
-                            kind_name(level.kind), static_cast<unsigned long long>(level.triangles),
-                            1000 * level.error);
+                            lds_kind_name(level.kind),
+                            static_cast<unsigned long long>(level.triangles), 1000 * level.error);
             levels.emplace_back(Fields{{"lod", lod},
-                                       {"kind", kind_name(level.kind)},
+                                       {"kind", lds_kind_name(level.kind)},
                                        {"triangles", level.triangles},
                                        {"error", level.error},
                                        {"max_error", level.max_error}});

@@ -42,27 +42,62 @@ std::string solid_text(const Model& model, const Representation& representation,
     return out;
 }
 
-std::string solids_text(const Model& model, const Representation& representation,
-                        const std::string& identifier, const RepresentationOptions& options,
-                        PictureWriter& pictures) {
-    const std::string declare = "#declare " + identifier + " = ";
-    if (representation.summary.kind != Kind::Composite) {
-        const Solid solid{representation.summary.kind == Kind::Box, representation.primitive(), 0};
-        const std::string text = solid_text(model, representation, solid, options, pictures);
-        return text.empty() ? text : declare + text;
+/// Writes what a representation draws, as a declaration: an overload for each kind's payload.
+class DeclarationWriter {
+public:
+    DeclarationWriter(const Model& model, const Representation& representation,
+                      const std::string& identifier, const RepresentationOptions& options,
+                      PictureWriter& pictures, const Job& job)
+        : model_(model),
+          representation_(representation),
+          identifier_(identifier),
+          options_(options),
+          pictures_(pictures),
+          job_(job) {}
+
+    std::string operator()(const Mesh& mesh) const {
+        check(mesh);
+        if (!options_.textures)
+            return mesh_text(mesh, nullptr, identifier_, job_);
+        const MeshTextures textures(model_, representation_, options_, pictures_, job_);
+        const char* left_out = textures.bumps_left_out() ? kBumpsLeftOut : "";
+        return mesh_text(mesh, &textures, identifier_, job_, pictures_.declarations() + left_out);
     }
-    std::string out;
-    size_t count = 0;
-    for (const Solid& solid : representation.composite().solids) {
-        const std::string text = solid_text(model, representation, solid, options, pictures);
-        count += text.empty() ? 0 : 1;
-        out += text;
+
+    std::string operator()(const Solid& solid) const {
+        const std::string text = solid_text(model_, representation_, solid, options_, pictures_);
+        return text.empty() ? text : declare() + text;
     }
-    if (count == 0)
-        return "";
-    // A union of one is an error to POV-Ray.
-    return count == 1 ? declare + out : declare + "union{\n" + out + "}\n";
-}
+
+    std::string operator()(const Composite& composite) const {
+        std::string out;
+        size_t count = 0;
+        for (const Solid& solid : composite.solids) {
+            const std::string text =
+                solid_text(model_, representation_, solid, options_, pictures_);
+            count += text.empty() ? 0 : 1;
+            out += text;
+        }
+        if (count == 0)
+            return "";
+        // A union of one is an error to POV-Ray.
+        return count == 1 ? declare() + out : declare() + "union{\n" + out + "}\n";
+    }
+
+    std::string operator()(const Assembly&) const {
+        fail(Status::Internal, "an assembly is drawn by what it places");
+    }
+
+private:
+    std::string declare() const { return "#declare " + identifier_ + " = "; }
+
+    const Model& model_;
+    const Representation& representation_;
+    const std::string& identifier_;
+    const RepresentationOptions& options_;
+    PictureWriter& pictures_;
+    const Job& job_;
+};
 
 }  // namespace
 
@@ -86,15 +121,8 @@ std::string identifier_of(Hash file) {
 std::string representation_text(const Model& model, const Representation& representation,
                                 const std::string& identifier, const RepresentationOptions& options,
                                 PictureWriter& pictures, const Job& job) {
-    if (representation.summary.kind != Kind::Mesh)
-        return solids_text(model, representation, identifier, options, pictures);
-    const Mesh& mesh = representation.mesh();
-    check(mesh);
-    if (!options.textures)
-        return mesh_text(mesh, nullptr, identifier, job);
-    const MeshTextures textures(model, representation, options, pictures, job);
-    const char* left_out = textures.bumps_left_out() ? kBumpsLeftOut : "";
-    return mesh_text(mesh, &textures, identifier, job, pictures.declarations() + left_out);
+    return visit(representation,
+                 DeclarationWriter(model, representation, identifier, options, pictures, job));
 }
 
 }  // namespace lodestone::povray

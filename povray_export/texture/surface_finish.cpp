@@ -241,17 +241,8 @@ glm::dvec3 color_of(Kind kind, uint32_t lod) {
     static constexpr glm::dvec3 kMesh[] = {{.84, .84, .84}, {.27, .33, .66}, {.16, .50, .73},
                                            {.13, .64, .65}, {.27, .75, .44}, {.62, .82, .23},
                                            {.95, .88, .15}};
-    switch (kind) {
-        case Kind::Box:
-            return from_srgb({.93, .45, .13});
-        case Kind::Ellipsoid:
-            return from_srgb({.82, .20, .58});
-        case Kind::Composite:
-            return from_srgb({.55, .34, .76});
-        case Kind::Mesh:
-        case Kind::Assembly:
-            break;
-    }
+    if (const auto& own = row_of(kind).false_color)
+        return from_srgb({(*own)[0], (*own)[1], (*own)[2]});
     return from_srgb(kMesh[std::min<size_t>(lod, std::size(kMesh) - 1)]);
 }
 

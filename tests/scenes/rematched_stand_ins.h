@@ -93,7 +93,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
                                double opacity) {
         hierarchy::StandInCandidate candidate;
         candidate.kind = kind;
-        candidate.primitive = primitive;
+        candidate.payload = primitive;
         candidate.materials = {solids::clear_material(solids::mean_material(wanted), opacity)};
         add(name, candidate,
             kind == Kind::Box ? tessellate_box(primitive) : tessellate_ellipsoid(primitive, 4));
@@ -113,7 +113,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
                 break;
             hierarchy::StandInCandidate candidate;
             candidate.kind = Kind::Composite;
-            candidate.composite = std::make_shared<const Composite>(level.composite);
+            candidate.payload = std::make_shared<const Composite>(level.composite);
             for (size_t i = 0; i < level.attributes.size(); ++i)
                 candidate.materials.push_back(solids::clear_material(
                     solids::mean_material(level.attributes[i]), level.opacities[i]));
@@ -126,11 +126,11 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
         add_composites("clear composite",
                        solids::clear_composites(mesh, skin, {}, wanted, {settings.seed}));
     hierarchy::StandInCandidate collapsed;
-    collapsed.mesh = std::make_shared<const Mesh>(
+    collapsed.payload = std::make_shared<const Mesh>(
         simplify::simplify_mesh(mesh, std::max<size_t>(8, mesh.triangles.size() / 10)));
     collapsed.materials = materials;
-    if (shows_as_much(*collapsed.mesh, finest, {}))  // else it is none
-        add("collapsed", collapsed, *collapsed.mesh);
+    if (shows_as_much(collapsed.mesh(), finest, {}))  // else it is none
+        add("collapsed", collapsed, collapsed.mesh());
     return out;
 }
 

@@ -51,17 +51,8 @@ const char* lds_status_name(lds_status status) {
 }
 
 const char* lds_kind_name(int32_t kind) {
-    static_assert(LDS_KIND_COUNT == static_cast<int>(Kind::Assembly) + 1);
-    switch (kind) {
-        case LDS_KIND_MESH:
-        case LDS_KIND_BOX:
-        case LDS_KIND_ELLIPSOID:
-        case LDS_KIND_COMPOSITE:
-        case LDS_KIND_ASSEMBLY:
-            return name_of(static_cast<Kind>(kind));
-        default:
-            return "";
-    }
+    static_assert(LDS_KIND_COUNT == kKindLimit);
+    return is_kind(kind) ? name_of(static_cast<Kind>(kind)) : "";
 }
 
 const char* lds_last_error_text(void) {

@@ -163,7 +163,7 @@ lds_status lds_povray_find(const char* program, const char** out_path) {
 lds_status lds_povray_false_color(int32_t kind, uint32_t lod, double out_color[3]) {
     return guard([&] {
         require(out_color, "out_color");
-        if (*lds_kind_name(kind) == '\0' || kind == LDS_KIND_ASSEMBLY)
+        if (!is_kind(kind) || !row_of(static_cast<Kind>(kind)).drawn)
             fail(Status::InvalidArgument, "kind ", kind, " is not drawn");
         copy(povray::color_of(static_cast<Kind>(kind), lod), out_color);
     });

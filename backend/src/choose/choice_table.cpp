@@ -73,7 +73,7 @@ uint32_t ChoiceTable::add(ObjectIndex index) {
     made.first_level = static_cast<uint32_t>(levels_.size());
     for (uint32_t lod = 0; lod < rest.all_levels; ++lod) {
         const RepresentationSummary& summary = object.representations[lod].summary;
-        if (summary.kind == Kind::Assembly || (kinds_ & mask_of(summary.kind)) == 0)
+        if ((kinds_ & kDrawnKinds & mask_of(summary.kind)) == 0)
             continue;
         TableLevel level;
         level.error = summary.error;

@@ -326,8 +326,7 @@ void CutChooser::take(uint32_t index, const TableLevel& level, double shown_px) 
     cut_->originals += level.lod == 0 ? 1 : 0;
     if (drawn_.size() <= level.distinct)
         drawn_.resize(std::max<size_t>(table_.distinct(), level.distinct + size_t{1}));
-    // A composite is copied for each occurrence.
-    if (!drawn_[level.distinct] || level.kind == Kind::Composite) {
+    if (!drawn_[level.distinct] || is_copied(level.kind)) {
         drawn_[level.distinct] = true;
         cut_->bytes += level.bytes;
     }

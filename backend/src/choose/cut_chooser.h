@@ -15,9 +15,8 @@ namespace lodestone::choose {
 /// chain of groups that each place the next one twice would not end.
 inline constexpr size_t kMostNodes = size_t{1} << 24u;
 
-/// The number of kinds.
-/// Law: Assembly is the last enumerator of Kind.
-inline constexpr size_t kKinds = static_cast<size_t>(Kind::Assembly) + 1;
+/// One more than the largest number of a kind.
+inline constexpr size_t kKinds = kKindLimit;
 
 /// Throws Error(InvalidArgument) for a view that makes no sense.
 void refuse_nonsense(const View& view);

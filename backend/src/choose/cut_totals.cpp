@@ -11,8 +11,8 @@ void CutTotals::clear(const ChoiceTable& table) {
 
 void CutTotals::count(const TableLevel& level, bool more, Cut& cut) {
     uint32_t& uses = uses_[level.distinct];
-    // A composite is copied for each occurrence.
-    const bool own = level.kind == Kind::Composite || uses == (more ? 0u : 1u);
+    // A union of solids is copied for each occurrence.
+    const bool own = is_copied(level.kind) || uses == (more ? 0u : 1u);
     const uint64_t bytes = occurrence_bytes_ + (own ? level.bytes : 0);
     const uint64_t original = level.lod == 0 ? 1 : 0;
     uint64_t& kind = kinds_[static_cast<size_t>(level.kind)];

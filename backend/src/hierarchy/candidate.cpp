@@ -31,36 +31,31 @@ void come_to(StandInCandidate& candidate, CandidateState next) {
 }
 
 uint64_t bytes_of(const StandInCandidate& candidate, const CostModel& costs) {
-    switch (candidate.kind) {
-        case Kind::Mesh:
-            return candidate.mesh->triangles.size() * costs.triangle_bytes;
-        case Kind::Composite:
-            return candidate.composite->solids.size() * costs.primitive_bytes;
-        default:
-            return costs.primitive_bytes;
-    }
+    return cost_of(candidate.kind, candidate.payload, costs).bytes;
 }
 
 double tracing_of(const StandInCandidate& candidate, const CostModel& costs) {
-    const auto clear_area = [&](const Primitive& primitive, bool box, uint16_t slot) {
-        if (slot >= candidate.materials.size() || !(candidate.error > 0))
+    if (!(candidate.error > 0))
+        return 0;
+    const auto clear_area = [&](const Solid& solid) {
+        if (solid.slot >= candidate.materials.size())
             return 0.0;
-        const Material& material = candidate.materials[slot];
+        const Material& material = candidate.materials[solid.slot];
         if (material.alpha_mode != AlphaMode::Blend || !(material.alpha < 1))
             return 0.0;
-        return (box ? solids::box_shell(primitive.half_size)
-                    : solids::ellipsoid_shell(primitive.half_size))
-            .area;
+        const glm::dvec3& half_size = solid.primitive.half_size;
+        return (solid.box ? solids::box_shell(half_size) : solids::ellipsoid_shell(half_size)).area;
     };
-    double area = 0;
-    if (candidate.kind == Kind::Composite) {
-        for (const Solid& solid : candidate.composite->solids)
-            area += clear_area(solid.primitive, solid.box, solid.slot);
-    } else if (candidate.kind != Kind::Mesh) {
-        area = clear_area(candidate.primitive, candidate.kind == Kind::Box, 0);
-    } else {
-        area = candidate.error > 0 ? candidate.clear_area : 0;
-    }
+    const double area =
+        visit_payload(candidate.kind, candidate.payload,
+                      Overloaded{[&](const Mesh&) { return candidate.clear_area; }, clear_area,
+                                 [&](const Composite& composite) {
+                                     double sum = 0;
+                                     for (const Solid& solid : composite.solids)
+                                         sum += clear_area(solid);
+                                     return sum;
+                                 },
+                                 [](const Assembly&) { return 0.0; }});
     if (!(area > 0))
         return 0;
     // A convex surface shows a quarter of its area from any side, in the mean, and is crossed

@@ -27,15 +27,18 @@ struct StandInCandidate {
     Kind kind = Kind::Mesh;
     double error = 0;
     double max_error = 0;
-    std::shared_ptr<const Mesh> mesh;  // where it is a mesh
-    Primitive primitive;               // where it is a box or an ellipsoid
-    std::shared_ptr<const Composite> composite;
+    Payload payload;
     std::vector<Material> materials;  // by slot
     double clear_area = 0;            // of a mesh's boxes that stand for what is thin
     CandidateState state = CandidateState::Measured;
     /// Solids that are matched in area and centroid, but by few rays: settle() uses more. No state:
     /// solids in all states may be so, those that stay are settled once, and nothing depends on it.
     bool by_few_rays = false;
+
+    /// Each throws Error(Internal) where it is another kind's.
+    const Mesh& mesh() const { return held<Mesh>(kind, payload, "mesh"); }
+    const Primitive& primitive() const { return held_primitive(kind, payload); }
+    const Composite& composite() const { return held<Composite>(kind, payload, "composite"); }
 };
 
 /// Brings a candidate to its next state. Throws Error: Internal, where may_follow() says no.

@@ -15,9 +15,7 @@ namespace {
 
 /// Whether both stand for one thing that was tried.
 bool is_same(const StandInCandidate& a, const StandInCandidate& b) {
-    return a.kind == b.kind && a.mesh == b.mesh && a.composite == b.composite &&
-           a.primitive.center == b.primitive.center &&
-           a.primitive.half_size == b.primitive.half_size;
+    return a.kind == b.kind && is_same(a.payload, b.payload);
 }
 
 /// Makes a box a mesh of vertex colors where its sides are not of one color.
@@ -26,13 +24,14 @@ void paint_sides(StandInCandidate& candidate, const MeasuredFinest& finest) {
         !finest.patches || candidate.materials[0].alpha_mode != AlphaMode::Opaque ||
         emits(candidate.materials[0]))
         return;
-    std::optional<solids::PaintedBox> painted = solids::painted_box(
-        candidate.primitive, candidate.materials[0],
-        finest.patches->fitted_vertex_colors(tessellate_box(candidate.primitive), finest.scene()));
+    std::optional<solids::PaintedBox> painted =
+        solids::painted_box(candidate.primitive(), candidate.materials[0],
+                            finest.patches->fitted_vertex_colors(
+                                tessellate_box(candidate.primitive()), finest.scene()));
     if (!painted)
         return;
     candidate.kind = Kind::Mesh;
-    candidate.mesh = std::make_shared<const Mesh>(std::move(painted->mesh));
+    candidate.payload = std::make_shared<const Mesh>(std::move(painted->mesh));
     candidate.materials = {std::move(painted->material)};
 }
 
@@ -110,7 +109,7 @@ std::vector<StandInCandidate> select_candidates(std::vector<StandInCandidate>& a
             if (before.kind != Kind::Mesh || before.state == kept[i].state)
                 continue;
             for (StandInCandidate& candidate : all) {
-                if (candidate.mesh == before.mesh)
+                if (is_same(candidate.payload, before.payload))
                     candidate = kept[i];
             }
         }

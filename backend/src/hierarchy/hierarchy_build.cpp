@@ -45,12 +45,7 @@ void add(Object& object, std::vector<StandInCandidate>&& made, Model& model,
         representation.summary.error = candidate.error;
         representation.summary.max_error = candidate.max_error;
         representation.summary.sealed = candidate.state == CandidateState::Sealed;
-        if (candidate.kind == Kind::Mesh)
-            representation.payload = std::move(candidate.mesh);
-        else if (candidate.kind == Kind::Composite)
-            representation.payload = std::move(candidate.composite);
-        else
-            representation.payload = candidate.primitive;
+        representation.payload = std::move(candidate.payload);
         for (const Material& material : candidate.materials)
             representation.materials.push_back(palette.index_of(material));
         summarize(representation, model);

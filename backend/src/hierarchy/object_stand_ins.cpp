@@ -50,7 +50,7 @@ std::vector<StandInCandidate> cheapest_of(ProposalRound& round) {
     }
     if (out.empty()) {
         StandInCandidate all;
-        all.mesh = std::make_shared<Mesh>(round.limits.mesh);
+        all.payload = std::make_shared<const Mesh>(round.limits.mesh);
         all.materials = round.finest.materials;
         measure_mesh(all, round.finest, round.job);
         out.push_back(std::move(all));

@@ -4,9 +4,6 @@
 namespace lodestone::hierarchy {
 namespace {
 
-constexpr uint64_t kTrianglesOfBox = 12;
-constexpr uint64_t kTrianglesOfEllipsoid = 80;
-
 /// A view in which a representation is good enough when its error is at most `error`.
 View view_within(double error) {
     View view;
@@ -22,15 +19,9 @@ uint64_t triangles_of(const Model& model, const choose::Cut& cut) {
     uint64_t triangles = cut.triangles;
     for (const uint32_t index : cut.chosen) {
         const choose::CutNode& node = cut.nodes[index];
-        const Kind kind = model.objects[node.object].representations[node.lod].summary.kind;
-        if (kind == Kind::Box)
-            triangles += kTrianglesOfBox;
-        else if (kind == Kind::Ellipsoid)
-            triangles += kTrianglesOfEllipsoid;
-        else if (kind == Kind::Composite)  // mostly ellipsoids
-            triangles +=
-                model.objects[node.object].representations[node.lod].composite().solids.size() *
-                kTrianglesOfEllipsoid;
+        const Representation& drawn = model.objects[node.object].representations[node.lod];
+        if (drawn.summary.kind != Kind::Mesh)
+            triangles += solid_triangles(drawn.summary.kind, drawn.payload);
     }
     return triangles;
 }

@@ -120,7 +120,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
         const RepresentationSummary& summary = drawn[i].representation->summary;
         bounds.push_back(transformed(summary.bound, drawn[i].world));
         // POV-Ray forgets flags of rays in clipped objects, and unions are not split then.
-        divisible.push_back(drawn[i].hidden == 0 && summary.kind != Kind::Composite &&
+        divisible.push_back(drawn[i].hidden == 0 && !is_copied(summary.kind) &&
                             !scene.partly_clear(i));
     }
     const size_t even = grid.points.size();

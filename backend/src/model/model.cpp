@@ -89,19 +89,6 @@ std::vector<uint8_t> that_hold(const Model& model, const Is& is) {
     return out;
 }
 
-DrawCost cost_of(const Representation& representation, const CostModel& costs) {
-    switch (representation.summary.kind) {
-        case Kind::Mesh: {
-            const uint64_t triangles = representation.mesh().triangles.size();
-            return {triangles, triangles * costs.triangle_bytes};
-        }
-        case Kind::Composite:
-            return {0, representation.composite().solids.size() * costs.primitive_bytes};
-        default:
-            return {0, costs.primitive_bytes};
-    }
-}
-
 DrawCost cost_of_children(const Representation& assembly, const Model& model) {
     DrawCost sum;
     for (const Placement& placement : assembly.assembly().placements) {
@@ -156,24 +143,9 @@ void summarize(Representation& representation, const Model& model, std::optional
     RepresentationSummary& summary = representation.summary;
     Hasher hasher;
     hasher.value(summary.kind);
-    if (summary.kind == Kind::Mesh) {
-        const Mesh& mesh = representation.mesh();
-        summary.bound = bound_of(mesh.positions);
-        hasher.value(mesh_hash ? *mesh_hash : hash_of(mesh));
-    } else if (summary.kind == Kind::Composite) {
-        const Composite& composite = representation.composite();
-        summary.bound = bound_of(composite);
-        for (const Solid& solid : composite.solids)
-            hasher.value(solid.box)
-                .bytes(&solid.primitive, sizeof solid.primitive)
-                .value(solid.slot);
-    } else {
-        const Primitive& primitive = representation.primitive();
-        summary.bound =
-            summary.kind == Kind::Box ? bound_of_box(primitive) : bound_of_ellipsoid(primitive);
-        hasher.bytes(&primitive, sizeof primitive);
-    }
-    summary.cost = cost_of(representation, model.costs);
+    summary.bound = bound_of(summary.kind, representation.payload);
+    summary.cost = cost_of(summary.kind, representation.payload, model.costs);
+    add_to_hash(hasher, summary.kind, representation.payload, mesh_hash);
     for (const uint32_t material : representation.materials)
         hasher.value(hash_of(model.materials.at(material)));
     summary.hash = hasher.result();
@@ -186,7 +158,8 @@ void set_costs(Model& model, const CostModel& costs) {
             if (representation.summary.kind == Kind::Assembly)
                 representation.summary.cost = cost_of_children(representation, model);
             else if (representation.resident())
-                representation.summary.cost = cost_of(representation, costs);
+                representation.summary.cost =
+                    cost_of(representation.summary.kind, representation.payload, costs);
         }
     }
 }

@@ -1,33 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "segment/store_json.h"
-
-#include <nlohmann/json.hpp>
+#include "segment/store_payloads.h"
 
 #include <map>
 
 namespace lodestone::segment {
 namespace {
 
-using Json = nlohmann::json;
-
-Json out(const glm::dvec3& v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
-Json out(const glm::dmat3& m) {
-    Json rows = Json::array();
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column)
-            rows.push_back(m[column][row]);
-    }
-    return rows;
-}
-
-Json out(const Affine& transform) {
-    double rows[12];
-    transform.to_rows(rows);
-    return Json(std::vector<double>(rows, rows + 12));
-}
+using segment::out;  // the overloads below would hide it
 
 /// Pictures in order of first use, each once.
 class PictureList {
@@ -138,10 +118,6 @@ Json out(const Attributes& a) {
             {"rays", a.rays}};
 }
 
-Json out(const Primitive& p) {
-    return {{"center", out(p.center)}, {"axes", out(p.axes)}, {"half_size", out(p.half_size)}};
-}
-
 Json out(const Representation& r) {
     const RepresentationSummary& s = r.summary;
     Json json = {{"kind", name_of(s.kind)},       {"error", s.error},
@@ -155,33 +131,7 @@ Json out(const Representation& r) {
     }
     if (s.sealed)
         json["sealed"] = true;
-    if (s.kind == Kind::Box || s.kind == Kind::Ellipsoid) {
-        json["primitive"] = out(r.primitive());
-    } else if (s.kind == Kind::Composite) {
-        Json solids = Json::array();
-        for (const Solid& solid : r.composite().solids) {
-            solids.push_back(out(solid.primitive));
-            solids.back()["box"] = solid.box;
-            solids.back()["slot"] = solid.slot;
-        }
-        json["solids"] = std::move(solids);
-    } else if (s.kind == Kind::Assembly) {
-        Json placements = Json::array();
-        for (const Placement& placement : r.assembly().placements) {
-            placements.push_back({{"object", placement.object},
-                                  {"transform", out(placement.transform)},
-                                  {"name", placement.name}});
-            if (placement.hidden != 0)
-                placements.back()["hidden"] = placement.hidden;
-            if (placement.importance != 1)
-                placements.back()["importance"] = placement.importance;
-            if (placement.coarsest != kAnyLevel)
-                placements.back()["coarsest"] = placement.coarsest;
-            if (placement.finest != 0)
-                placements.back()["finest"] = placement.finest;
-        }
-        json["placements"] = std::move(placements);
-    }
+    write_payload(json, r);
     return json;
 }
 

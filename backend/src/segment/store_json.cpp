@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "segment/store_json.h"
 
+#include "segment/store_payloads.h"
 #include "segment/tile_tree.h"
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,58 +10,6 @@
 
 namespace lodestone::segment {
 namespace {
-
-using Json = nlohmann::json;
-
-double number(const Json& json, const char* key) {
-    const double value = json.at(key).get<double>();
-    if (!std::isfinite(value))
-        fail(Status::BadFile, "'", key, "' is not a finite number");
-    return value;
-}
-
-template <typename Integer>
-Integer integer(const Json& json, const char* key) {
-    const Json& value = json.at(key);
-    const auto in_range = [](auto found) { return std::in_range<Integer>(found); };
-    if (!value.is_number_integer() ||
-        !(value.is_number_unsigned() ? in_range(value.get<uint64_t>())
-                                     : in_range(value.get<int64_t>())))
-        fail(Status::BadFile, "'", key, "' is not a whole number in its range");
-    return value.get<Integer>();
-}
-
-std::vector<double> numbers(const Json& json, const char* key, size_t count) {
-    auto values = json.at(key).get<std::vector<double>>();
-    if (values.size() != count)
-        fail(Status::BadFile, "'", key, "' has ", values.size(), " numbers; ", count, " expected");
-    for (const double value : values) {
-        if (!std::isfinite(value))
-            fail(Status::BadFile, "'", key, "' holds a number that is not finite");
-    }
-    return values;
-}
-
-glm::dvec3 vector(const Json& json, const char* key) {
-    const std::vector<double> v = numbers(json, key, 3);
-    return {v[0], v[1], v[2]};
-}
-
-glm::dmat3 matrix(const Json& json, const char* key) {
-    const std::vector<double> v = numbers(json, key, 9);
-    return {v[0], v[3], v[6], v[1], v[4], v[7], v[2], v[5], v[8]};
-}
-
-Hash hash(const Json& json, const char* key) {
-    const auto word = json.at(key).get<std::string>();
-    if (word.size() != 16 || word.find_first_not_of("0123456789abcdef") != std::string::npos)
-        fail(Status::BadFile, "'", key, "' is not 16 hexadecimal digits");
-    return std::stoull(word, nullptr, 16);
-}
-
-double number_or(const Json& json, const char* key, double usual) {
-    return json.contains(key) ? number(json, key) : usual;
-}
 
 PicturePtr picture(const Json& json) {
     auto p = std::make_shared<Picture>();
@@ -84,14 +31,6 @@ PicturePtr picture(const Json& json) {
     const std::vector<double> mean = numbers(json, "mean", 4);
     p->mean = {mean[0], mean[1], mean[2], mean[3]};
     return p;
-}
-
-template <typename Enum>
-Enum choice(const Json& json, const char* key, Enum last) {
-    const int value = integer<int>(json, key);
-    if (value < 0 || value > static_cast<int>(last))
-        fail(Status::BadFile, "'", key, "' is ", value);
-    return static_cast<Enum>(value);
 }
 
 using Pictures = std::vector<PicturePtr>;
@@ -186,63 +125,6 @@ Attributes attributes(const Json& json) {
     return a;
 }
 
-std::shared_ptr<const Assembly> assembly(const Json& json, size_t object_count) {
-    auto out = std::make_shared<Assembly>();
-    for (const Json& one : json.at("placements")) {
-        Placement placement;
-        placement.object = integer<uint32_t>(one, "object");
-        if (placement.object >= object_count)
-            fail(Status::BadFile, "a placement names object ", placement.object, " of ",
-                 object_count);
-        placement.transform = Affine::from_rows(numbers(one, "transform", 12).data());
-        placement.name = one.at("name").get<std::string>();
-        if (one.contains("hidden")) {
-            const auto hidden = integer<uint32_t>(one, "hidden");
-            if (hidden > kAllRays)
-                fail(Status::BadFile, "'", placement.name, "' is hidden from ray classes ", hidden);
-            placement.hidden = static_cast<RayMask>(hidden);
-        }
-        if (one.contains("importance")) {
-            placement.importance = number(one, "importance");
-            if (!(placement.importance >= 1 / kMostImportance &&
-                  placement.importance <= kMostImportance))
-                fail(Status::BadFile, "'", placement.name, "' has importance ",
-                     placement.importance);
-        }
-        if (one.contains("coarsest"))
-            placement.coarsest = integer<uint32_t>(one, "coarsest");
-        if (one.contains("finest"))
-            placement.finest = integer<uint32_t>(one, "finest");
-        out->placements.push_back(std::move(placement));
-    }
-    return out;
-}
-
-Primitive primitive(const Json& json, Kind kind) {
-    const Primitive out{vector(json, "center"), matrix(json, "axes"), vector(json, "half_size")};
-    if (!(glm::min(out.half_size.x, glm::min(out.half_size.y, out.half_size.z)) > 0))
-        fail(Status::BadFile, "a ", name_of(kind), " has no size");
-    return out;
-}
-
-std::shared_ptr<const Composite> composite(const Json& json, size_t slots) {
-    constexpr size_t kMostSolids = 1024;  // more are no file of ours
-    if (!json.is_array() || json.empty() || json.size() > kMostSolids)
-        fail(Status::BadFile, "a composite has ", json.size(), " solids");
-    auto out = std::make_shared<Composite>();
-    for (const Json& one : json) {
-        Solid solid;
-        solid.box = one.at("box").get<bool>();
-        solid.primitive = primitive(one, solid.box ? Kind::Box : Kind::Ellipsoid);
-        const auto slot = integer<uint32_t>(one, "slot");
-        if (slot >= slots)
-            fail(Status::BadFile, "a solid shows slot ", slot, " of ", slots);
-        solid.slot = static_cast<uint16_t>(slot);
-        out->solids.push_back(solid);
-    }
-    return out;
-}
-
 Representation representation(const Json& json, size_t object_count, size_t material_count) {
     Representation r;
     RepresentationSummary& s = r.summary;
@@ -267,13 +149,7 @@ Representation representation(const Json& json, size_t object_count, size_t mate
             fail(Status::BadFile, "a representation names material ", index, " of ",
                  material_count);
     }
-    if (s.kind == Kind::Box || s.kind == Kind::Ellipsoid) {
-        r.payload = primitive(json.at("primitive"), s.kind);
-    } else if (s.kind == Kind::Composite) {
-        r.payload = composite(json.at("solids"), r.materials.size());
-    } else if (s.kind == Kind::Assembly) {
-        r.payload = assembly(json, object_count);
-    }
+    r.payload = read_payload(json, s.kind, {object_count, r.materials.size()});
     return r;
 }
 

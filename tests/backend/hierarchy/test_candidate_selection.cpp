@@ -19,7 +19,7 @@ TEST(KeepUseful, DropsWhatIsNoBetterThanSomethingCheaper) {
     std::vector<hierarchy::StandInCandidate> candidates;
     const auto add = [&](uint32_t side, double error) {
         hierarchy::StandInCandidate candidate;
-        candidate.mesh = std::make_shared<const Mesh>(shapes::terrain(side));
+        candidate.payload = std::make_shared<const Mesh>(shapes::terrain(side));
         candidate.error = error;
         candidates.push_back(candidate);
     };

@@ -225,7 +225,7 @@ TEST(Flatten, MeshWithoutCoordinatesKeepsItsMeanBesideOneThatHasSome) {
 TEST(Candidates, WhatIsClearCostsWhatTracingItTakesAndIsNoUseBesideASharedMesh) {
     using hierarchy::StandInCandidate;
     StandInCandidate mesh;
-    mesh.mesh = std::make_shared<const Mesh>(shapes::sphere(1, 3));  // 1280 triangles
+    mesh.payload = std::make_shared<const Mesh>(shapes::sphere(1, 3));  // 1280 triangles
     mesh.error = 0.1;
     const CostModel costs = povray::povray_costs();
     StandInCandidate clear;
@@ -234,7 +234,7 @@ TEST(Candidates, WhatIsClearCostsWhatTracingItTakesAndIsNoUseBesideASharedMesh) 
     solids.solids.resize(8);
     for (Solid& solid : solids.solids)
         solid.primitive.half_size = glm::dvec3(0.5);
-    clear.composite = std::make_shared<const Composite>(solids);
+    clear.payload = std::make_shared<const Composite>(solids);
     clear.materials.resize(1);
     clear.error = 0.15;
     EXPECT_EQ(hierarchy::tracing_of(clear, costs), 0) << "opaque";

@@ -205,8 +205,7 @@ private:
         const Object& object = model_.objects[node.object];
         std::vector<uint32_t> solids;
         for (uint32_t lod = node.lod + 1; lod < object.representations.size(); ++lod) {
-            const Kind kind = level(node, lod).summary.kind;
-            if (usable(node, lod) && (kind == Kind::Box || kind == Kind::Ellipsoid))
+            if (usable(node, lod) && std::holds_alternative<Primitive>(level(node, lod).payload))
                 solids.push_back(lod);
         }
         const double total = factors.total();
@@ -284,7 +283,7 @@ private:
             ++out.met;
             out.triangles += met.summary.cost.triangles;
             out.bytes += model_.costs.occurrence_bytes;
-            if (drawn.insert(met.summary.hash).second || met.summary.kind == Kind::Composite)
+            if (drawn.insert(met.summary.hash).second || is_copied(met.summary.kind))
                 out.bytes += met.summary.cost.bytes;
         };
         for (const uint32_t chosen : cut_.chosen) {
@@ -355,7 +354,7 @@ ResidentSize resident_size(const Model& model, const Cut& cut, const std::vector
             model.objects[node.object].representations[lod].summary;
         out.triangles += summary.cost.triangles;
         out.bytes += model.costs.occurrence_bytes;
-        if (drawn.insert(summary.hash).second || summary.kind == Kind::Composite)
+        if (drawn.insert(summary.hash).second || is_copied(summary.kind))
             out.bytes += summary.cost.bytes;
     };
     std::vector<uint8_t> alone(cut.nodes.size(), 0);

@@ -94,7 +94,7 @@ void RayNeed::find_shapes(const ShapeOf& shape_of) {
         if (!reflects_only(model_, drawn))
             continue;
         mirror.flat =
-            drawn.summary.kind == Kind::Box || drawn.summary.kind == Kind::Ellipsoid ||
+            std::holds_alternative<Primitive>(drawn.payload) ||
             (drawn.summary.kind == Kind::Mesh && shape_of(drawn, nullptr).convexity.flattens);
     }
 }

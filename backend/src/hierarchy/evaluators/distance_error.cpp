@@ -28,7 +28,7 @@ void measure_mesh(StandInCandidate& candidate, const MeasuredFinest& finest, con
         candidate.error = candidate.max_error = std::numeric_limits<double>::infinity();
         return;
     }
-    const Mesh& mesh = *candidate.mesh;
+    const Mesh& mesh = candidate.mesh();
     const std::vector<uint16_t> looks = finest.looks->of(mesh, candidate.materials);
     const measure::SurfaceLooks surface{looks, finest.looks.get(), skin_of(candidate, finest)};
     const double most = finest.distance_for(useless);
@@ -40,7 +40,7 @@ void measure_mesh(StandInCandidate& candidate, const MeasuredFinest& finest, con
 
 void measure_primitive(StandInCandidate& candidate, const MeasuredFinest& finest, double useless,
                        const Job& job) {
-    const Solid solid{candidate.kind == Kind::Box, candidate.primitive};
+    const Solid solid{candidate.kind == Kind::Box, candidate.primitive()};
     set_error(candidate,
               finest.reference->of(solid, finest.looks->of(candidate.materials[0]),
                                    finest.distance_for(useless), job),

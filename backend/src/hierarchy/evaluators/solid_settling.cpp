@@ -44,10 +44,10 @@ void settle_composite(StandInCandidate& candidate, SureAttributes& sure, double 
     constexpr uint64_t kSeedOfMany = 1;
     // The same rays for all (7 MB): making them takes as long as asking them once.
     static const solids::VisibleSolids kVisible(kRaysOfMany, kSeedOfMany);
-    Composite composite = *candidate.composite;
+    Composite composite = candidate.composite();
     solids::settle_composite(composite, sure.by(kRaysOfMany, solids::kSettledComposite, job), floor,
                              kVisible, job);
-    candidate.composite = std::make_shared<const Composite>(std::move(composite));
+    candidate.payload = std::make_shared<const Composite>(std::move(composite));
 }
 
 void settle_primitive(StandInCandidate& candidate, const MeasuredFinest& finest,
@@ -57,7 +57,7 @@ void settle_primitive(StandInCandidate& candidate, const MeasuredFinest& finest,
     constexpr double kStands = 1e-9;
     const bool box = candidate.kind == Kind::Box;
     const bool clear = candidate.materials[0].alpha_mode == AlphaMode::Blend;
-    Primitive& primitive = candidate.primitive;
+    Primitive& primitive = std::get<Primitive>(candidate.payload);
     const bool stands = solids::reach_of(primitive, box).low <= floor + kStands * finest.size;
     if (clear) {
         Material& material = candidate.materials[0];

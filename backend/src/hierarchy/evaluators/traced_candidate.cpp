@@ -13,19 +13,11 @@ constexpr int kSubdivisionsInComposite = 2;
 }  // namespace
 
 const Mesh& traced_mesh(const StandInCandidate& candidate, Mesh& solid) {
-    switch (candidate.kind) {
-        case Kind::Mesh:
-            return *candidate.mesh;
-        case Kind::Composite:
-            solid = tessellate(*candidate.composite, kSubdivisionsInComposite);
-            return solid;
-        case Kind::Box:
-            solid = tessellate_box(candidate.primitive);
-            return solid;
-        default:
-            solid = tessellate_ellipsoid(candidate.primitive, kSubdivisions);
-            return solid;
-    }
+    if (candidate.kind == Kind::Mesh)
+        return candidate.mesh();
+    solid = tessellated(candidate.kind, candidate.payload,
+                        is_copied(candidate.kind) ? kSubdivisionsInComposite : kSubdivisions);
+    return solid;
 }
 
 ray::SkinPtr skin_of(const StandInCandidate& unmatched, const MeasuredFinest& finest) {

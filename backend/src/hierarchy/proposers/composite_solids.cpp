@@ -38,7 +38,7 @@ size_t most_solids(const std::vector<StandInCandidate>& candidates, const Replac
 StandInCandidate candidate_of(const solids::ClusteredComposite& level) {
     StandInCandidate out;
     out.kind = Kind::Composite;
-    out.composite = std::make_shared<const Composite>(level.composite);
+    out.payload = std::make_shared<const Composite>(level.composite);
     for (size_t i = 0; i < level.attributes.size(); ++i)
         out.materials.push_back(
             solids::clear_material(solids::mean_material(level.attributes[i]), level.opacities[i]));
@@ -100,7 +100,7 @@ void add_composites(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
         const double error = kNearer * rough.back().error;
         if (would_pay(rough.back(), error, candidates, whole)) {
             // It may be one of fewer than were asked for.
-            exact.least = std::bit_ceil(rough.back().composite->solids.size());
+            exact.least = std::bit_ceil(rough.back().composite().solids.size());
             exact.most = std::max(exact.most, exact.least);
             continue;
         }

@@ -80,7 +80,7 @@ void propose_environment_stand_ins(ProposalRound& round) {
         both.slots.resize(both.triangles.size(), 0);
         append(both, solids, {}, static_cast<uint16_t>(materials.size()));
         StandInCandidate candidate;
-        candidate.mesh = std::make_shared<const Mesh>(std::move(both));
+        candidate.payload = std::make_shared<const Mesh>(std::move(both));
         candidate.state = CandidateState::Unproven;
         candidate.materials = materials;
         for (const Attributes& own : beside.attributes)

@@ -32,7 +32,7 @@ public:
         if (!bare_)
             return 0;
         StandInCandidate candidate;
-        candidate.mesh = std::make_shared<Mesh>(level);
+        candidate.payload = std::make_shared<const Mesh>(level);
         candidate.materials = finest.materials;
         measure_mesh(candidate, finest, job);
         const double bare = bare_->of(level, {}, job).error;
@@ -112,7 +112,7 @@ std::vector<StandInCandidate> followed_levels(const Model& model, const Object& 
             continue;
         const deform::PoseError pose_error = deform::pose_error(level, *followed, surface);
         StandInCandidate candidate;
-        candidate.mesh = std::make_shared<Mesh>(std::move(*followed));
+        candidate.payload = std::make_shared<const Mesh>(std::move(*followed));
         candidate.materials = materials;
         candidate.error = counted(
             std::max(pose_error.error, level.look_error * std::max(1.0, pose_error.growth)));

@@ -60,7 +60,7 @@ void propose_levels(ProposalRound& round) {
         }
         const measure::DeviationReference::RepaintResult known = repaint(level, finest, job, most);
         StandInCandidate candidate;
-        candidate.mesh = std::make_shared<Mesh>(std::move(level));
+        candidate.payload = std::make_shared<const Mesh>(std::move(level));
         candidate.materials = finest.materials;
         candidate.state = CandidateState::Unproven;
         measure_mesh(candidate, finest, job, most, known);

@@ -22,7 +22,7 @@ void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& boun
     const auto add = [&](Kind kind, const Primitive& primitive, double opacity) {
         StandInCandidate candidate;
         candidate.kind = kind;
-        candidate.primitive = primitive;
+        candidate.payload = primitive;
         candidate.materials = {solids::clear_material(material, opacity)};
         candidate.by_few_rays = true;
         if (pictures) {

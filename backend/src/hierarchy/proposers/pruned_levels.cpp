@@ -146,7 +146,7 @@ public:
             if (i == kCorrections ||
                 correct(growth,
                         visible_by_tag_of_level(level, tags, 1 + growth.size(), finest_, job_))) {
-                out.mesh = std::make_shared<Mesh>(std::move(level));
+                out.payload = std::make_shared<const Mesh>(std::move(level));
                 out.materials =
                     contrasted(finest_.materials, crowd_, rest_slots_, visible_, crowd.variance);
                 return out;
@@ -232,7 +232,7 @@ void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& me
             if (steps[i].crowd_triangles + rests[i].triangles.size() > most)
                 continue;
             StandInCandidate candidate = thinner.thinned(order, steps[i], rests[i]);
-            if (candidate.mesh->triangles.size() >= mesh.triangles.size())
+            if (candidate.mesh().triangles.size() >= mesh.triangles.size())
                 continue;
             compare_pictures(candidate, own, finest, pictures, job);
             const bool enough = candidate.error >= bound.radius;  // any solid will do

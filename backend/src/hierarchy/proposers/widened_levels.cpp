@@ -163,7 +163,7 @@ StandInCandidate widened_level(const StandInCandidate& level, const Mesh& others
     }
     Mesh mesh = others;
     append(mesh, tessellate(boxes), Affine());
-    out.mesh = std::make_shared<const Mesh>(std::move(mesh));
+    out.payload = std::make_shared<const Mesh>(std::move(mesh));
     return out;
 }
 
@@ -184,7 +184,7 @@ void propose_widened_levels(ProposalRound& round) {
         [&](const StandInCandidate& candidate) {  // no pruned mesh and no painted box
             return candidate.kind == Kind::Mesh && candidate.state != CandidateState::Pictured &&
                    candidate.materials.size() == materials.size() &&
-                   candidate.mesh->colors.empty() == mesh.colors.empty();
+                   candidate.mesh().colors.empty() == mesh.colors.empty();
         };
     if (!(visible < kSparsest * 4 * std::numbers::pi * finest.size * finest.size) ||
         materials.size() + kMostThin > std::numeric_limits<uint16_t>::max() ||
@@ -202,7 +202,7 @@ void propose_widened_levels(ProposalRound& round) {
         StandInCandidate exact;  // but for what is widened
         exact.materials = materials;
         exact = widened_level(exact, beside, thin, width, floor);
-        return fine->of(*exact.mesh, finest.skin_of(exact.materials), job).error;
+        return fine->of(exact.mesh(), finest.skin_of(exact.materials), job).error;
     };
     std::vector<StandInCandidate> out;
     size_t most = mesh.triangles.size();
@@ -211,20 +211,20 @@ void propose_widened_levels(ProposalRound& round) {
         const StandInCandidate& level = kept[i];
         if (!is_level(level) || !(level.error > thin.thickness && (wide || level.error < widest))) {
             if (is_level(level))
-                most = level.mesh->triangles.size();
+                most = level.mesh().triangles.size();
             out.push_back(level);
             continue;
         }
         const double next =
             i + 1 < kept.size() ? kept[i + 1].error : std::numeric_limits<double>::infinity();
-        const Mesh others = rest_of(*level.mesh, thin, finest);
+        const Mesh others = rest_of(level.mesh(), thin, finest);
         double error = level.error;
         bool any = false;
         double width = std::min(level.error, widest);
         for (int step = 0; step < kMostWidths && width <= widest; ++step) {
             StandInCandidate made = widened_level(level, others, thin, width, floor);
             error = std::max({error, 0.5 * width, seen_from(width)});
-            if (made.mesh->triangles.size() > most || !(error < next))
+            if (made.mesh().triangles.size() > most || !(error < next))
                 break;
             match_brightness(made, finest, round.pictures, next, job);
             made.error = error;
@@ -235,7 +235,7 @@ void propose_widened_levels(ProposalRound& round) {
             width *= kRatio;
         }
         if (any)
-            most = out.back().mesh->triangles.size();
+            most = out.back().mesh().triangles.size();
         else if (!wide)
             out.push_back(level);  // else what is wide already serves instead
         wide = wide || any;

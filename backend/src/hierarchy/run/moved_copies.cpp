@@ -76,22 +76,8 @@ MovedCopy moved_from(const Model& model, ObjectIndex group, ObjectIndex original
 }
 
 Payload moved_payload(const Representation& from, const Affine& place, const MeshSource& source) {
-    const auto moved = [&](Primitive primitive) {
-        primitive.center = place(primitive.center);
-        primitive.axes = place.linear * primitive.axes;
-        return primitive;
-    };
-    if (from.summary.kind == Kind::Mesh) {
-        Mesh mesh;
-        append(mesh, *source(from), place);
-        return std::make_shared<const Mesh>(std::move(mesh));
-    }
-    if (from.summary.kind != Kind::Composite)
-        return moved(from.primitive());
-    Composite composite = from.composite();
-    for (Solid& solid : composite.solids)
-        solid.primitive = moved(solid.primitive);
-    return std::make_shared<const Composite>(std::move(composite));
+    const Kind kind = from.summary.kind;
+    return moved(kind, kind == Kind::Mesh ? Payload(source(from)) : from.payload, place);
 }
 
 }  // namespace

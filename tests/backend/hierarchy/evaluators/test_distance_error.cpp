@@ -19,14 +19,16 @@ protected:
     }
     hierarchy::StandInCandidate level_of(const Mesh& mesh) const {
         hierarchy::StandInCandidate out;
-        out.mesh = std::make_shared<const Mesh>(mesh);
+        out.payload = std::make_shared<const Mesh>(mesh);
         out.materials = materials_;
         return out;
     }
     hierarchy::StandInCandidate box_of(const glm::dvec3& half_size) const {
         hierarchy::StandInCandidate out;
         out.kind = Kind::Box;
-        out.primitive.half_size = half_size;
+        Primitive box;
+        box.half_size = half_size;
+        out.payload = box;
         out.materials = materials_;
         return out;
     }

@@ -25,7 +25,7 @@ protected:
     hierarchy::StandInCandidate unproven(const Mesh& mesh, const glm::dvec3& color) const {
         hierarchy::StandInCandidate out;
         out.state = CandidateState::Unproven;
-        out.mesh = std::make_shared<const Mesh>(mesh);
+        out.payload = std::make_shared<const Mesh>(mesh);
         // More slots than the finest has: else the level would be drawn in the finest's skin.
         out.materials = {models::colored("a", color), models::colored("b", color)};
         out.error = out.max_error = 1e-3;

@@ -87,7 +87,7 @@ TEST_F(StandInPictureError, ABallAsLargeAndOfAnotherBrightnessIsMadeAsBright) {
     hierarchy::FinestPictures pictures(finest);
     hierarchy::StandInCandidate candidate;
     candidate.kind = Kind::Ellipsoid;
-    candidate.primitive.half_size = glm::dvec3(1);
+    candidate.payload = Primitive{{}, glm::dmat3(1.0), glm::dvec3(1)};
     candidate.materials = {models::colored("dark", glm::dvec3(0.3))};
     EXPECT_THROW(compare_pictures(candidate, {}, finest, pictures, {}), Error) << "none are taken";
     pictures.take(ball, measure::AgreementReference::kCoarseSide, {});
@@ -96,7 +96,9 @@ TEST_F(StandInPictureError, ABallAsLargeAndOfAnotherBrightnessIsMadeAsBright) {
     EXPECT_NEAR(candidate.materials[0].base_color.x, 0.5, 0.02);
     hierarchy::StandInCandidate thinner = candidate;
     thinner.state = hierarchy::CandidateState::Measured;
-    thinner.primitive.half_size.x = 0.4;
+    Primitive thin = thinner.primitive();
+    thin.half_size.x = 0.4;
+    thinner.payload = thin;
     compare_pictures(thinner, {}, finest, pictures, {});
     EXPECT_GT(thinner.error, 2 * candidate.error);
     EXPECT_THROW(compare_pictures(candidate, {}, finest, pictures, {}), Error) << "it was already";

@@ -75,7 +75,7 @@ void expect_meshes_that_get_simpler(const std::vector<StandInCandidate>& levels,
         EXPECT_TRUE(std::isfinite(levels[i].error));
         EXPECT_LE(levels[i].error, levels[i].max_error);
         if (i > 0) {
-            EXPECT_LT(levels[i].mesh->triangles.size(), levels[i - 1].mesh->triangles.size());
+            EXPECT_LT(levels[i].mesh().triangles.size(), levels[i - 1].mesh().triangles.size());
         }
     }
 }
@@ -133,7 +133,7 @@ TEST_F(StandInProposers, ATreeIsPrunedAndComparedByPictures) {
             EXPECT_EQ(candidate.state, CandidateState::Pictured) << row;
     }
     for (const StandInCandidate& level : made["prune"])
-        EXPECT_LT(level.mesh->triangles.size(), mesh_.triangles.size());
+        EXPECT_LT(level.mesh().triangles.size(), mesh_.triangles.size());
     EXPECT_NO_THROW(static_cast<void>(pictures_->taken()));
 }
 
@@ -163,7 +163,7 @@ TEST_F(StandInProposers, WhatStandsOnEnvironmentIsSolidsBesideIt) {
         EXPECT_EQ(candidate.kind, Kind::Mesh);
         EXPECT_EQ(candidate.state, CandidateState::Unproven);
         EXPECT_GT(candidate.materials.size(), finest_->materials.size());
-        EXPECT_LT(candidate.mesh->triangles.size(), mesh_.triangles.size());
+        EXPECT_LT(candidate.mesh().triangles.size(), mesh_.triangles.size());
     }
     auto bare = walk(shapes::terrain(20), {models::colored("all", {0.3, 0.3, 0.3})}, options,
                      std::vector<uint8_t>(shapes::terrain(20).triangles.size(), 1));

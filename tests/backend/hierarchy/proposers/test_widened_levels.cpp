@@ -40,7 +40,7 @@ Attributes attributes_of(const Mesh& mesh) {
 hierarchy::StandInCandidate level_of(const Mesh& mesh, const std::vector<Material>& own,
                                      double error) {
     hierarchy::StandInCandidate out;
-    out.mesh = std::make_shared<const Mesh>(mesh);
+    out.payload = std::make_shared<const Mesh>(mesh);
     out.materials = own;
     out.error = out.max_error = error;
     return out;
@@ -108,7 +108,7 @@ TEST_F(Widen, AnOpaquePostOfALevelIsDrawnAsWideAsTheErrorAndAsClear) {
     const auto made = widened(lamp(), materials(), level, 0.25);
     ASSERT_EQ(made.size(), 2u) << "two widths";
     for (size_t i = 0; i < made.size(); ++i) {
-        const Mesh& mesh = *made[i].mesh;
+        const Mesh& mesh = made[i].mesh();
         EXPECT_TRUE(in_slot(mesh, kPost).empty()) << i;
         EXPECT_EQ(in_slot(mesh, kGlass).positions, in_slot(level, kGlass).positions) << i;
         EXPECT_EQ(in_slot(mesh, kBulb).positions, in_slot(level, kBulb).positions) << i;
@@ -137,11 +137,11 @@ TEST_F(Widen, NoOpaquePostIsLeftBehindAClearOne) {
                 {level_of(levels[0], own, 0.05), level_of(levels[1], own, 0.2),
                  level_of(levels[2], own, 1.5)});
     ASSERT_GE(kept.size(), 3u);
-    EXPECT_EQ(kept[0].mesh->positions, levels[0].positions);
+    EXPECT_EQ(kept[0].mesh().positions, levels[0].positions);
     for (size_t i = 1; i < kept.size(); ++i) {
-        EXPECT_TRUE(in_slot(*kept[i].mesh, kPost).empty()) << i;
+        EXPECT_TRUE(in_slot(kept[i].mesh(), kPost).empty()) << i;
         EXPECT_GT(kept[i].error, kept[i - 1].error) << i;
-        EXPECT_LE(kept[i].mesh->triangles.size(), kept[i - 1].mesh->triangles.size()) << i;
+        EXPECT_LE(kept[i].mesh().triangles.size(), kept[i - 1].mesh().triangles.size()) << i;
     }
 }
 
@@ -160,7 +160,7 @@ TEST_F(Widen, LevelsNearerThanPostsAreThickStayAsTheyAre) {
     ASSERT_EQ(made.size(), 1u);
     EXPECT_EQ(made[0].materials.size(), 3u);
     EXPECT_EQ(made[0].error, 0.05);
-    EXPECT_EQ(made[0].mesh->positions, lamp().positions);
+    EXPECT_EQ(made[0].mesh().positions, lamp().positions);
 }
 
 TEST_F(Widen, WhatHasNoThinPartsKeepsItsLevels) {
@@ -174,10 +174,10 @@ TEST_F(Widen, WhatHasNoThinPartsKeepsItsLevels) {
         const auto made = widened(lamp(), own, lamp(), 0.25);
         ASSERT_EQ(made.size(), 1u);
         EXPECT_EQ(made[0].materials.size(), 3u);
-        EXPECT_EQ(made[0].mesh->positions, lamp().positions);
+        EXPECT_EQ(made[0].mesh().positions, lamp().positions);
     }
     const Mesh head = moved_up(shapes::sphere(0.2, 2), 3.1, kBulb);
-    EXPECT_EQ(widened(head, materials(), head, 0.05)[0].mesh->positions, head.positions);
+    EXPECT_EQ(widened(head, materials(), head, 0.05)[0].mesh().positions, head.positions);
 }
 
 TEST_F(Widen, TenThousandWiresAreLeftAlone) {
@@ -188,7 +188,7 @@ TEST_F(Widen, TenThousandWiresAreLeftAlone) {
             append(wires, wire, models::moved(x, y, 0));
     const auto made = widened(wires, {Material{}}, wires, 2);
     ASSERT_EQ(made.size(), 1u);
-    EXPECT_EQ(made[0].mesh->triangles.size(), wires.triangles.size());
+    EXPECT_EQ(made[0].mesh().triangles.size(), wires.triangles.size());
 }
 
 TEST_F(Widen, PostsWithoutThicknessAreNoTrouble) {

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Store payloads: what each kind of representation draws, as the store says it. Meshes lie in files
+// of their own.
+#pragma once
+
+#include "model/representation.h"
+#include "segment/json_values.h"
+
+namespace lodestone::segment {
+
+/// How many there are of what a payload names.
+struct PayloadLimits {
+    size_t objects = 0;
+    size_t slots = 0;
+};
+
+void write_payload(Json& json, const Representation& representation);
+
+/// A mesh is not resident.
+Payload read_payload(const Json& json, Kind kind, const PayloadLimits& limits);
+
+}  // namespace lodestone::segment
