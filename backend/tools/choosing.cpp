@@ -26,10 +26,19 @@ const OptionHelp kRayClasses{
 
 namespace {
 
-constexpr std::array<std::pair<const char*, uint32_t>, 3> kClasses{
-    {{"shadow", LDS_RAYS_SHADOW},
-     {"reflection", LDS_RAYS_REFLECTION},
-     {"radiosity", LDS_RAYS_RADIOSITY}}};
+constexpr std::array kClasses{std::pair{"shadow", LDS_RAYS_SHADOW},
+                              std::pair{"reflection", LDS_RAYS_REFLECTION},
+                              std::pair{"radiosity", LDS_RAYS_RADIOSITY}};
+
+/// "shadow, reflection or radiosity"
+std::string known_classes() {
+    std::string all;
+    for (size_t i = 0; i < kClasses.size(); ++i) {
+        all += i == 0 ? "" : i + 1 < kClasses.size() ? ", " : " or ";
+        all += kClasses[i].first;
+    }
+    return all;
+}
 
 /// A mask of lds_rays. Throws UsageError.
 uint32_t classes_of(const std::optional<std::string>& list) {
@@ -40,8 +49,7 @@ uint32_t classes_of(const std::optional<std::string>& list) {
         const auto* found = std::find_if(kClasses.begin(), kClasses.end(),
                                          [&](const auto& name) { return word == name.first; });
         if (found == kClasses.end())
-            throw UsageError("--ray-classes has '" + word +
-                             "'; shadow, reflection or radiosity expected");
+            throw UsageError("--ray-classes has '" + word + "'; " + known_classes() + " expected");
         mask |= found->second;
         at = end + 1;
     }

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/scene/occurrence_text.h"
 
+#include <array>
 #include <string_view>
 
 namespace lodestone::povray {
 namespace {
+
+/// For each of kRayClasses: what hides a thing from it.
+constexpr std::array kHiddenWords{" no_image", " no_reflection", " no_shadow", " no_radiosity"};
+static_assert(kHiddenWords.size() == kRayClasses.size());
 
 const std::string& name_of_node(const Model& model, const choose::Cut& cut, uint32_t node) {
     const choose::CutNode& here = cut.nodes[node];
@@ -17,14 +22,10 @@ const std::string& name_of_node(const Model& model, const choose::Cut& cut, uint
 }  // namespace
 
 void append_hidden(std::string& out, RayMask hidden) {
-    if ((hidden & kCameraRays) != 0)
-        out += " no_image";
-    if ((hidden & kReflectionRays) != 0)
-        out += " no_reflection";
-    if ((hidden & kShadowRays) != 0)
-        out += " no_shadow";
-    if ((hidden & kRadiosityRays) != 0)
-        out += " no_radiosity";
+    for (size_t i = 0; i < kRayClasses.size(); ++i) {
+        if ((hidden & kRayClasses[i]) != 0)
+            out += kHiddenWords[i];
+    }
 }
 
 void append_name(std::string& out, const Model& model, const choose::Cut& cut, uint32_t node) {

@@ -11,7 +11,8 @@ from enum import EnumMeta
 from pathlib import Path
 
 import addon_path
-from lodestone_native import base, enums, functions, kind_counts, library, structs
+from lodestone_native import LodestoneError, Model, base, enums, functions, kind_counts, library
+from lodestone_native import structs
 from lodestone_native.job import Job
 
 HEADER = addon_path.ROOT / "backend" / "include" / "lodestone" / "lodestone.h"
@@ -133,6 +134,20 @@ class Functions(unittest.TestCase):
             ours = {member.name: member.value for member in enum}
             ours.pop("OK", None)
             self.assertEqual(ours, named)
+
+    def test_indirect_rays_are_the_classes_behind_the_cameras(self):
+        classes = {one.name: one.value for one in enums.RayClass}
+        self.assertEqual(classes.pop("CAMERA"), 1)
+        self.assertEqual({one.name: 2 * one.value for one in enums.Rays}, classes)
+
+    def test_the_library_knows_each_ray_class_and_no_other(self):
+        known = sum(enums.RayClass)
+        with Model() as model:
+            group, leaf = model.add_group("group", "group"), model.add_group("leaf", "leaf")
+            place = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+            model.add_placement(group, leaf, place, "seen by none", hidden=known)
+            with self.assertRaisesRegex(LodestoneError, "ray classes"):
+                model.add_placement(group, leaf, place, "wrong", hidden=known + 1)
 
     def test_words_of_kinds_are_the_librarys(self):
         loaded = library.library()

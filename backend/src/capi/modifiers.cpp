@@ -69,12 +69,11 @@ QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* m
         fail(Status::InvalidArgument, "modifiers.off_screen is ", given.off_screen,
              "; 0 to 2 expected");
     out.off_screen = static_cast<OffScreen>(given.off_screen);
-    constexpr uint32_t kAllClasses = LDS_RAYS_REFLECTION | LDS_RAYS_SHADOW | LDS_RAYS_RADIOSITY;
+    constexpr uint32_t kAllClasses = kIndirectRays >> 1u;  // the camera's bit comes first
     if ((given.ray_classes & ~kAllClasses) != 0)
         fail(Status::InvalidArgument, "modifiers.ray_classes is ", given.ray_classes, "; 0 to ",
              kAllClasses, " expected");
-    out.ray_classes =
-        static_cast<RayMask>(given.ray_classes << 1u);  // the camera's bit comes first
+    out.ray_classes = static_cast<RayMask>(given.ray_classes << 1u);
     if (given.closing != nullptr)
         out.closing = camera_of(given.closing);
     return out;

@@ -5,14 +5,16 @@
 #include "capi/guard.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace lodestone::capi {
 namespace {
 
 /// The class a caller names, which must be one.
 RayMask class_of(uint32_t rays) {
-    if (rays != LDS_RAYS_REFLECTION && rays != LDS_RAYS_SHADOW && rays != LDS_RAYS_RADIOSITY)
-        fail(Status::InvalidArgument, "rays is ", rays, "; one of 1, 2 and 4 expected");
+    if (!std::has_single_bit(rays) || rays > kIndirectRays >> 1u)
+        fail(Status::InvalidArgument, "rays is ", rays, "; one bit of ", kIndirectRays >> 1u,
+             " expected");
     return static_cast<RayMask>(rays << 1u);
 }
 

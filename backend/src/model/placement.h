@@ -4,6 +4,7 @@
 
 #include "base/maths.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -20,7 +21,12 @@ inline constexpr RayMask kCameraRays = 1;
 inline constexpr RayMask kReflectionRays = 2;
 inline constexpr RayMask kShadowRays = 4;
 inline constexpr RayMask kRadiosityRays = 8;
-inline constexpr RayMask kAllRays = 15;
+/// All of them, rising.
+inline constexpr std::array kRayClasses{kCameraRays, kReflectionRays, kShadowRays, kRadiosityRays};
+inline constexpr RayMask kAllRays = 2 * kRayClasses.back() - 1;
+/// Those that may meet other representations than the camera's rays do. The C interface numbers
+/// them without the camera's bit.
+inline constexpr RayMask kIndirectRays = kAllRays & ~kCameraRays;
 
 /// No limit on how coarse something is drawn.
 inline constexpr uint32_t kAnyLevel = ~uint32_t{0};

@@ -93,8 +93,7 @@ struct QualityModifiers {
     /// Coarser where little light falls, unless the world behind is bright.
     bool when_dark = false;
     OffScreen off_screen = OffScreen::Full;
-    /// Of kReflectionRays, kShadowRays and kRadiosityRays: those that may meet other
-    /// representations than the camera's rays do.
+    /// Those of kIndirectRays that may meet other representations than the camera's rays do.
     RayMask ray_classes = 0;
 };
 

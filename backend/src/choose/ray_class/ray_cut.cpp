@@ -326,7 +326,7 @@ std::vector<RayCut> choose_rays(const Model& model, const View& view, const Cut&
     std::optional<RayChooser> chooser;
     if (any)
         chooser.emplace(model, view, cut, shape_of, job);
-    for (const RayMask rays : {kReflectionRays, kShadowRays, kRadiosityRays}) {
+    for (const RayMask rays : kRayClasses) {
         if ((view.modifiers.ray_classes & rays) == 0)
             continue;
         if (chooser)
