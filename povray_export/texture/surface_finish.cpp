@@ -139,11 +139,10 @@ glm::dvec3 from_srgb(const glm::dvec3& color) {
 
 SurfaceLook look_of(const Material& material) {
     SurfaceLook look;
-    look.roughness = clamped(material.roughness, 0, 1, 0.5);
-    look.metallic = clamped(material.metallic, 0, 1, 0);
-    look.specular = clamped(material.specular, 0, 1, 0.5);
-    look.clearcoat = clamped(material.clearcoat, 0, 1, 0);
-    look.clearcoat_roughness = clamped(material.clearcoat_roughness, 0, 1, 0.03);
+    for_each_field_of<double>([&](const MaterialField<double>& field) {
+        double& number = look.*field.member;
+        number = clamped(material.*field.member, field.clamped.low, field.clamped.high, number);
+    });
     return look;
 }
 

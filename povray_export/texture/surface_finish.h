@@ -26,15 +26,9 @@ struct Finish {
     double mirror_metallic = 0;
 };
 
-/// The numbers of a material in their ranges, whatever was given.
-struct SurfaceLook {
-    double roughness = 0.5;
-    double metallic = 0;
-    double specular = 0.5;
-    double clearcoat = 0;
-    double clearcoat_roughness = 0.03;
-};
-/// The numbers of a material.
+/// A material whose numbers are finite and in their ranges, without its textures and the other one.
+using SurfaceLook = Material;
+/// The look of a material, whatever its numbers are.
 SurfaceLook look_of(const Material& material);
 
 /// The finish of a look, found by fitting: tests/bench/fit_finish.py. Smooth surfaces mirror their

@@ -2,7 +2,7 @@
 """Looks: materials in the backend's terms, before their pictures are added to a model."""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...core.expression.color_expression import Color
 from ...core.native import lodestone_native as native
@@ -61,6 +61,14 @@ def gray(value: float) -> Value:
     return Value((value, value, value))
 
 
+class Constant(NamedTuple):
+    """A number that the backend holds no texture for: its words in problems, and its range."""
+
+    words: str
+    least: float = 0.0
+    most: float = 1.0
+
+
 @dataclass(frozen=True)
 class Look:
     """The backend's material without its name."""
@@ -90,16 +98,24 @@ class Look:
 
 
 DEFAULT = Look(roughness=gray(0.4))  # Blender's own for an empty slot
+CONSTANTS = {
+    "specular": Constant("specular"),
+    "transmission": Constant("transmission"),
+    "ior": Constant("IOR", 0.1, 10.0),
+    "clearcoat": Constant("clear coat"),
+    "clearcoat_roughness": Constant("clear coat's roughness"),
+}
 TEXTURED = ("base_color", "roughness", "metallic", "emission", "alpha", "mix")
-_SHARES = ("specular", "alpha_cutoff", "transmission", "clearcoat", "clearcoat_roughness")
 _LIMIT = 1e9
 
 
 def add(model: Any, pictures: Any, name: str, look: Look) -> int:
     """The model's index of a look with the pictures it needs; that of what it is mixed with too."""
-    fields: dict[str, Any] = {key: _unit(getattr(look, key)) for key in _SHARES}
+    fields: dict[str, Any] = {
+        key: _within(getattr(look, key), one.least, one.most) for key, one in CONSTANTS.items()
+    }
     fields["alpha_mode"] = look.alpha_mode
-    fields["ior"] = _within(look.ior, 0.1, 10.0)
+    fields["alpha_cutoff"] = _unit(look.alpha_cutoff)
     fields["normal_strength"] = _within(look.normal_strength, 0.0, 10.0)
     fields["bump_distance"] = _within(look.bump_distance, -_LIMIT, _LIMIT)
     fields["vertex_colors"] = int(look.vertex_colors is not None)

@@ -16,7 +16,7 @@ from .. import datablock_ids
 from ..datablock_ids import name_of
 from . import material_looks, node_graph
 from .expression_textures import Textures, main_coordinates
-from .material_looks import DEFAULT, Look, Value, VertexColors, gray
+from .material_looks import CONSTANTS, DEFAULT, Look, Value, VertexColors, gray
 from .node_expressions import NodeExpressions, Setting, mean_of
 from .shader_nodes import Shaders
 from .shader_surfaces import Clear, Shader, Surface, each_surface, surfaces
@@ -219,29 +219,26 @@ class _Translator:
         if relief.bump is not None and bump is None:
             self.note(WARNING, "bump", "its bumps are left out")
         roughness, metallic = textures.number(surface.roughness), textures.number(surface.metallic)
-        transmission = textures.constant(surface.transmission, "transmission")
-        if transmission > 0.0 and metallic.number < 1.0 and roughness.number > _CLEAR:
+        constants = {
+            key: textures.constant(getattr(surface, key), one.words)
+            for key, one in CONSTANTS.items()
+        }
+        if constants["transmission"] > 0.0 and metallic.number < 1.0 and roughness.number > _CLEAR:
             self.note(WARNING, "rough_glass", "its rough glass is drawn clear")
         return Look(
             base_color=textures.color(base),
             roughness=roughness,
             metallic=metallic,
-            specular=textures.constant(surface.specular, "specular"),
             emission=textures.color(surface.emission),
             alpha=value,
             alpha_mode=mode,
             alpha_cutoff=cutoff,
-            transmission=transmission,
-            ior=textures.constant(surface.ior, "IOR"),
-            clearcoat=textures.constant(surface.clearcoat, "clear coat"),
-            clearcoat_roughness=textures.constant(
-                surface.clearcoat_roughness, "clear coat's roughness"
-            ),
             normal=normal,
             normal_strength=relief.strength,
             bump=bump,
             bump_distance=relief.distance,
             vertex_colors=vertex,
+            **constants,
         )
 
     def _alpha(self, alpha: Expression, textures: Textures) -> tuple[Value, int, float]:
