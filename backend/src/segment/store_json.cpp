@@ -56,9 +56,9 @@ Texture texture(const Json& material, const char* key, const Pictures& pictures)
 }
 
 /// Reads what a field of a material says.
-class MaterialReader {
+class StoredMaterialReader {
 public:
-    MaterialReader(const Json& json, const Pictures& pictures, int depth = 0)
+    StoredMaterialReader(const Json& json, const Pictures& pictures, int depth = 0)
         : json_(json), pictures_(pictures), depth_(depth) {}
 
     Material material() {
@@ -98,7 +98,7 @@ private:
     }
     void read(const char* key, std::shared_ptr<const Material>& other) const {
         other = std::make_shared<Material>(
-            MaterialReader(json_.at(key), pictures_, depth_ + 1).material());
+            StoredMaterialReader(json_.at(key), pictures_, depth_ + 1).material());
     }
 
     const Json& json_;
@@ -245,7 +245,7 @@ Model model_of(const Json& json) {
     for (const Json& one : json.at("pictures"))
         pictures.push_back(picture(one));
     for (const Json& one : json.at("materials"))
-        model.materials.push_back(MaterialReader(one, pictures).material());
+        model.materials.push_back(StoredMaterialReader(one, pictures).material());
     const Json& objects = json.at("objects");
     for (const Json& one : objects)
         model.objects.push_back(object(one, objects.size(), model.materials.size()));
