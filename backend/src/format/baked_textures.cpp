@@ -33,7 +33,8 @@ public:
     int width() const { return width_; }
     int height() const { return height_; }
 
-    /// Of a texel of the new picture, row 0 on top; outside: nothing is there.
+    /// The value of a texel of the new picture, row 0 on top; outside of the picture the texture
+    /// has nothing.
     double value(const ChannelSource& ingredient, int x, int y) const {
         if (ingredient.texture == nullptr)
             return ingredient.constant;
@@ -67,8 +68,8 @@ const Texture& lead(const Recipe& recipe) {
     fail(Status::Internal, "a recipe without textures");
 }
 
-/// Texels around a clipped picture. Under a turn both directions must be stretched alike, or the
-/// turn would become a shear.
+/// The number of texels around a clipped picture. Under a turn both directions must be stretched
+/// alike, or the turn would become a shear.
 glm::ivec2 border_of(const Texture& texture, int width, int height) {
     if (texture.extension != TextureExtension::Clip)
         return {0, 0};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bake: textures drawn into a new picture, for files that cannot say what is done with a texel.
+// Baked textures: textures drawn into a new picture, for files that cannot say what is done with a
+// texel.
 #pragma once
 
 #include "model/texture.h"
@@ -11,14 +12,14 @@
 
 namespace lodestone::format {
 
-/// What goes into one channel of the new picture.
+/// The source of one channel of the new picture: a texture, or a constant without one.
 struct ChannelSource {
     const Texture* texture = nullptr;  // null: `constant`
-    int component = -1;                // 0...2: of its color; -1: its number
+    int component = -1;                // 0...2: a component of its color; -1: its one number
     double constant = 1;
 };
 
-/// Red, green, blue, alpha.
+/// The sources of red, green, blue and alpha.
 using Recipe = std::array<ChannelSource, 4>;
 
 /// The three components of a texture's color, alpha 1.
@@ -27,20 +28,21 @@ Recipe color_recipe(const Texture& texture);
 /// Whether two textures show their pictures at the same places, in the same manner.
 bool same_layout(const Texture& a, const Texture& b);
 
-/// The result times `limit` is what the recipe says; it is shown by TextureChannel::Color, offset 0, scale
-/// 1 (a number by the channel it was put in), and never clipped: a clipped picture gets a border.
+/// A texture whose values times `limit` are those of the recipe. It is shown by
+/// TextureChannel::Color (a number by the channel it was put in) with offset 0 and scale 1. It is
+/// never clipped: a clipped picture gets a border.
 struct BakedTexture {
     Texture texture;
     double limit = 1;
 };
 
-/// An 8 bit PNG of the largest picture's size. All textures of the recipe have the same layout.
-/// What exceeds 1 is clamped, or, `bright`, divided by a power of two. Nothing when a picture is
-/// not resident or broken, or there are too many pixels.
+/// Draws an 8 bit PNG of the largest picture's size. All textures of the recipe must have the same
+/// layout. Values above 1 are clamped, or, if `bright`, all are divided by a power of two. Returns
+/// nothing when a picture is not resident or broken, or there are too many pixels.
 std::optional<BakedTexture> bake_recipe(const Recipe& recipe, ColorSpace space,
                                         bool bright = false);
 
-/// Of all that bake_recipe() looks at.
+/// The hash of all that bake_recipe() reads.
 Hash hash_of(const Recipe& recipe, ColorSpace space);
 
 }  // namespace lodestone::format

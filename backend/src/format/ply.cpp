@@ -38,6 +38,7 @@ struct PlyHeader {
 };
 
 size_t size_of(PlyType type) {
+    // Law: the bytes of the types, in the order of PlyType.
     constexpr std::array<size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
     return kSizes[static_cast<size_t>(type)];
 }
@@ -283,6 +284,7 @@ private:
             std::string_view name;
             int place;
         };
+        // Law: the names that PLY files have in use, and our order of a vertex's numbers.
         constexpr std::array<PropertyPlace, 20> kPlaces{{{"x", 0},
                                                          {"y", 1},
                                                          {"z", 2},

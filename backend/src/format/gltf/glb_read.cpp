@@ -16,9 +16,11 @@
 namespace lodestone::format {
 namespace {
 
+// The most nodes one in another.
+// Taste: a larger number reads files that nest deeper and needs more stack.
 constexpr int kMostDepth = 256;
 
-/// In glTF's frame.
+/// The transform of a node, in glTF's frame.
 Affine transform_of(const tinygltf::Node& node) {
     Affine out;
     if (node.matrix.size() == 16) {
@@ -77,6 +79,7 @@ public:
     }
 
 private:
+    // Law: an index that no object has, as kNoObject is taken.
     static constexpr ObjectIndex kUnread = kNoObject - 1;
 
     void check_extensions() const {

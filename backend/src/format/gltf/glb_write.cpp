@@ -15,6 +15,7 @@
 namespace lodestone::format {
 namespace {
 
+// Taste: a larger number writes larger scenes, in memory in proportion.
 constexpr size_t kMostNodes = size_t{1} << 22u;
 
 class GlbWriter {
@@ -35,6 +36,7 @@ public:
     }
 
 private:
+    // Law: a mesh's index is 0 or more, and -1 is that of none.
     static constexpr int kUnwritten = -2;
 
     void write_root() {
@@ -92,8 +94,11 @@ private:
         return first;
     }
 
-    /// Columns are orthogonal and not 0: a rotation (or mirror) and scales, as glTF demands.
+    /// Whether the columns are orthogonal and not 0: a rotation (or mirror) and scales, as glTF
+    /// demands.
     static bool rectangular(const glm::dmat3& m) {
+        // The most by which the cosine of two columns may differ from 0.
+        // Taste: a larger value writes more matrices as rotations, and is off by as much.
         constexpr double kTolerance = 1e-5;
         for (int i = 0; i < 3; ++i) {
             const int k = (i + 1) % 3;

@@ -126,6 +126,7 @@ int add_view(tinygltf::Model& model, const void* data, size_t bytes, int target)
 }
 
 int add_floats(tinygltf::Model& model, std::span<const float> values, int components, bool bounds) {
+    // Law: the types of accessors by their number of components (glTF 2.0, accessor data types).
     constexpr int kTypes[5] = {0, TINYGLTF_TYPE_SCALAR, TINYGLTF_TYPE_VEC2, TINYGLTF_TYPE_VEC3,
                                TINYGLTF_TYPE_VEC4};
     tinygltf::Accessor accessor;

@@ -23,9 +23,9 @@ public:
     AccessorElements(const tinygltf::Model& model, int accessor, int components);
 
     size_t count() const { return count_; }
-    /// Integers are normalized where the accessor says so.
+    /// A number of an element. Integers are normalized where the accessor says so.
     float number(size_t element, int component) const;
-    /// Of an unsigned integer accessor; throws Error(BadFile) for others.
+    /// The value of an unsigned integer accessor; throws Error(BadFile) for others.
     uint32_t index(size_t element) const;
 
 private:
@@ -36,12 +36,13 @@ private:
     bool normalized_ = false;
 };
 
-/// How many numbers an element has; 0 for what is no vector. Throws Error(BadFile).
+/// How many numbers an element has; 0 for matrices. Throws Error(BadFile).
 int components_of(const tinygltf::Model& model, int accessor);
 
 /// Appends data, 4-byte aligned, as one buffer view (`target` 0 = none) of buffer 0.
 int add_view(tinygltf::Model& model, const void* data, size_t bytes, int target);
-/// Floats of 1...4 components; `bounds` adds min and max. The data is one a vertex.
+/// Appends an accessor of floats with 1 to 4 components, one element a vertex; `bounds` adds min
+/// and max. Returns its index.
 int add_floats(tinygltf::Model& model, std::span<const float> values, int components, bool bounds);
 
 /// The member of an extras or extensions object; null when there is none.

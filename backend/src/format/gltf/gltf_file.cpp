@@ -20,8 +20,11 @@
 namespace lodestone::format {
 namespace {
 
+// Law: "glTF" in ASCII, little-endian (glTF 2.0, GLB header).
 constexpr uint32_t kGlbMagic = 0x46546C67;
+// Law: "JSON" in ASCII, little-endian (glTF 2.0, GLB chunks).
 constexpr uint32_t kJsonChunk = 0x4E4F534A;
+// Law: "BIN" and a zero in ASCII, little-endian (glTF 2.0, GLB chunks).
 constexpr uint32_t kBinaryChunk = 0x004E4942;
 
 uint32_t word_at(std::string_view bytes, size_t offset) {
@@ -104,6 +107,7 @@ public:
 
 private:
     bool enter() {
+        // Taste: a larger number reads files that nest deeper and needs more stack.
         constexpr int kMostNested = 64;
         if (++depth_ > kMostNested)
             complaint = "its JSON is nested too deeply";

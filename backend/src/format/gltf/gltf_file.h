@@ -12,9 +12,9 @@ class Model;
 
 namespace lodestone::format {
 
-/// GLB or glTF text, told by the first bytes. Buffers in files of their own are read only from
-/// below `folder` (empty: none); pictures in files of their own are not read, those of data: URIs
-/// stay encoded, in Image::image. References inside the model are not checked. Throws
+/// Loads GLB or glTF text, told by the first bytes. Buffers in files of their own are read only
+/// from below `folder` (empty: none); pictures in files of their own are not read, those of data:
+/// URIs stay encoded, in Image::image. References inside the model are not checked. Throws
 /// Error(BadFile) naming `name`.
 void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesystem::path& folder,
                const std::string& name);
@@ -23,7 +23,7 @@ void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesy
 /// chunk. Throws Error(InvalidArgument) when that has 2 GiB or more.
 std::string save_glb(tinygltf::Model& model);
 
-/// What a URI names: %41 becomes A.
+/// The path that a URI names: %41 becomes A.
 std::string percent_decoded(std::string_view uri);
 
 }  // namespace lodestone::format

@@ -9,7 +9,10 @@
 namespace lodestone::format {
 
 /// Our axis i is glTF's axis kAxis[i], times kSign[i].
+/// Law: glTF's Y points up and its Z to the front (glTF 2.0, coordinates); our Z points up, our Y
+/// to the back.
 inline constexpr std::array<int, 3> kAxis{0, 2, 1};
+/// Law: as kAxis.
 inline constexpr std::array<double, 3> kSign{1, -1, 1};
 
 /// The same motion in the other frame; an exchange and signs, so exact. Its own inverse but for

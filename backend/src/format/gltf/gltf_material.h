@@ -20,35 +20,35 @@ struct Material;
 
 namespace lodestone::format {
 
-/// What the words of glTF say (not our extras): metallic-roughness, pictures, alpha modes and
-/// KHR_materials_ clearcoat, emissive_strength, ior, specular, transmission, unlit,
+/// The material that the words of glTF describe (not our extras): metallic-roughness, pictures,
+/// alpha modes and KHR_materials_ clearcoat, emissive_strength, ior, specular, transmission, unlit,
 /// pbrSpecularGlossiness (its diffuse part). A texture that cannot be used, or only as its mean, is
-/// a problem; every other extension is one that names it.
+/// a problem; every other extension is a problem that names it.
 Material material_seen(const tinygltf::Model& model, const tinygltf::Material& from,
                        GltfPictureReader& pictures, const std::string& name, Problems& problems);
 
-/// All of the file, our extras included; then two for parts without any, the second for those with
-/// vertex colors. vertex_colors is set where a primitive of the material has COLOR_0: glTF always
-/// multiplies by them.
+/// All materials of the file, our extras included; then two for primitives without one, the second
+/// for those with vertex colors. vertex_colors is set where a primitive of the material has
+/// COLOR_0: glTF always multiplies by them.
 std::vector<Material> read_materials(const tinygltf::Model& model, GltfPictureReader& pictures,
                                      const std::string& name, Problems& problems);
 
 /// Adds materials, their textures, samplers and pictures.
 class MaterialWriter {
 public:
-    /// `embed`: pictures go into the file, what glTF cannot say of a texture is drawn into a new
-    /// one, and the extras keep what is still missing. Else the store's pictures are named, and a
-    /// texture that glTF cannot say as it is counts as its mean.
+    /// `embed`: pictures go into the file. A texture that glTF has no words for is drawn into a new
+    /// picture, and the extras keep what is still missing. Else the store's pictures are named, and
+    /// a texture that glTF has no words for counts as its mean.
     MaterialWriter(tinygltf::Model& model, bool embed);
     MaterialWriter(const MaterialWriter&) = delete;
     MaterialWriter& operator=(const MaterialWriter&) = delete;
 
-    /// Returns its index. `uvs`: whether the mesh has them; without, no texture is shown, as glTF
-    /// asks. Colors and numbers are clamped to what glTF allows.
+    /// Adds a material and returns its index. `uvs`: whether the mesh has them; without them no
+    /// texture is shown, as glTF asks. Colors and numbers are clamped to the range glTF allows.
     int add(const Material& material, bool uvs);
 
 private:
-    /// A texture as glTF can say it, and what its values are to be multiplied by.
+    /// A texture that glTF has words for, and the factor of its values.
     struct TextureLayer {
         Texture texture;
         glm::dvec4 factor{1.0};
@@ -58,7 +58,8 @@ private:
     TextureLayer roughness_layer(const Material& material);
     TextureLayer emission_layer(const Material& material);
     TextureLayer normal_layer(const Material& material);
-    /// Drawn into a new picture whose values are to be multiplied by `factor`; else `otherwise`.
+    /// The recipe drawn into a new picture whose values are to be multiplied by `factor`; where
+    /// that fails, `otherwise`.
     TextureLayer drawn(const Recipe& recipe, ColorSpace space, const TextureLayer& otherwise,
                        const glm::dvec4& factor, bool bright = false);
     void add_reflection(const Material& material, tinygltf::Material& out);

@@ -18,6 +18,7 @@ namespace {
 
 using tinygltf::Value;
 
+// Law: the usual ior (KHR_materials_ior).
 constexpr double kGltfIor = 1.5;
 
 glm::dvec4 color_in(const std::vector<double>& numbers, double usual) {
@@ -68,7 +69,7 @@ private:
         return {info.index, info.texCoord, &info.extensions};
     }
 
-    /// Of a texture inside an extension: only its mean is used.
+    /// The use of a texture inside an extension: only its mean is read.
     static TextureUse use_in(const Value& value) {
         TextureUse use;
         const Value& index = member(value, "index");
@@ -77,7 +78,7 @@ private:
         return use;
     }
 
-    /// Nothing without a texture, or when it cannot be used (a problem then).
+    /// Gives nothing without a texture, or when it cannot be used (which is a problem).
     std::optional<FoundTexture> find(const TextureUse& use, ColorSpace space) {
         if (use.texture < 0)
             return std::nullopt;
@@ -217,13 +218,13 @@ private:
         if (const Value* value = extension("KHR_materials_transmission"); value != nullptr)
             out_.transmission = limited(number_of(member(*value, "transmissionFactor"), 0), 0, 1) *
                                 mean_in(*value, "transmissionTexture", 0);
-        double facing = 1;  // reflectance of the ior, in that of 1.5
+        double facing = 1;  // the reflectance of the ior, over that of an ior of 1.5
         if (out_.transmission > 0)
             out_.ior = kGltfIor;
         if (const Value* value = extension("KHR_materials_ior"); value != nullptr) {
             const double ior = number_of(member(*value, "ior"), kGltfIor);
             out_.ior = ior >= 1 ? std::min(ior, 100.0) : kGltfIor;
-            // What is refracted reflects by its own index; the rest by `specular`.
+            // A surface that refracts reflects by its own index, any other by `specular`.
             const double ratio = (out_.ior - 1) / (out_.ior + 1);
             facing = out_.transmission > 0 ? 1 : ratio * ratio / 0.04;
         }

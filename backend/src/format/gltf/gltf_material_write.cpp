@@ -17,10 +17,12 @@ namespace {
 
 using tinygltf::Value;
 
+// The largest number of a color that is written.
+// Taste: a larger value keeps brighter lamps, which other readers may not.
 constexpr double kBrightest = 1e6;
 
-/// tinygltf leaves out what is this near to a default: it is made the default, so that what is
-/// written is what is read.
+/// tinygltf leaves out numbers that are this near to a default. They are made the default, so that
+/// the same numbers are written and read.
 double plain(double value, double usual) {
     return std::abs(value - usual) < 1e-11 ? usual : value;
 }

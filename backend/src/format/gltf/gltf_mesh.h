@@ -22,15 +22,15 @@ struct Mesh;
 
 namespace lodestone::format {
 
-/// What a slot of a mesh is written as.
+/// The material that a slot of a mesh is written with.
 struct SlotMaterial {
     int index = -1;  // into the file's materials, or none
     bool vertex_colors = false;
 };
 
-/// Slots without a material have none. A mesh without triangles becomes
-/// points. Returns the index of the mesh, or -1 for one without vertices. Throws
-/// Error(InvalidArgument) for numbers that are not finite.
+/// Adds a mesh and returns its index, or -1 for one without vertices. Slots beyond `materials` have
+/// none. A mesh without triangles becomes points. Throws Error(InvalidArgument) for numbers that
+/// are not finite.
 int add_mesh(tinygltf::Model& model, const Mesh& mesh, std::span<const SlotMaterial> materials,
              const std::string& name);
 
@@ -39,17 +39,17 @@ struct ReadMesh {
     std::vector<int> materials;  // by slot, into the file's materials or -1; not checked
 };
 
-/// The mesh when all is as add_mesh() writes it (not repaired); else nothing.
+/// The mesh, not repaired, when all is as add_mesh() writes it; else nothing.
 std::optional<ReadMesh> own_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from);
 
-/// What can still be read of a file: vertices and triangles.
+/// The numbers of vertices and triangles that may still be read of a file.
 struct GltfReadBudget {
     uint64_t vertices = 0;
     uint64_t triangles = 0;
 };
 
-/// Any mesh: lists, strips and fans of triangles. Primitives that are broken or no triangles are
-/// left out with a problem of `name`.
+/// Reads any mesh: lists, strips and fans of triangles. Primitives that are broken or no triangles
+/// are left out with a problem of `name`.
 ReadMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
                       const std::string& name, GltfReadBudget& budget, Problems& problems);
 

@@ -19,7 +19,11 @@ namespace {
 
 using tinygltf::Value;
 
-constexpr int kMostMixtures = 32;  // each nests the JSON one deeper
+// The most mixtures one in another.
+// Taste: each nests the JSON one deeper, of which gltf_file.cpp reads 64.
+constexpr int kMostMixtures = 32;
+// The largest number of a list (a color, a texture's mapping) that is believed.
+// Taste: nearly any double; a larger value lets products of such numbers overflow sooner.
 constexpr double kAny = 1e300;
 
 bool same_bits(double a, double b) {

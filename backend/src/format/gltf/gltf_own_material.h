@@ -18,13 +18,14 @@ namespace lodestone::format {
 class GltfPictureReader;
 class GltfPictureWriter;
 
-/// What is to be added to `seen` to have `material`; null when nothing is. Pictures that are needed
+/// The extras that make `material` of `seen`; null when they are the same. Pictures that are needed
 /// are added to the file; textures whose picture is not resident, numbers that are not finite and
 /// mixtures of more than 32 are left out.
 tinygltf::Value extras_of_material(const Material& material, const Material& seen,
                                    GltfPictureWriter& pictures);
 
-/// Adds them to what was seen; false, and nothing done, when they make no sense or are of another.
+/// Applies extras to the material that was seen. Returns false, and changes nothing, when they make
+/// no sense or belong to another material.
 bool apply_material_extras(const tinygltf::Value& words, GltfPictureReader& pictures,
                            Material& seen);
 

@@ -25,12 +25,12 @@ public:
     GltfPictureReader(const tinygltf::Model& model, const std::filesystem::path& folder,
                       const std::string& name, size_t bytes);
 
-    /// Throws Error(BadFile or Io) with a sentence that names the picture; a broken one is looked
-    /// at only once.
+    /// The picture of an image of the file. Throws Error(BadFile or Io) with a sentence that names
+    /// the picture; a broken one is read only once.
     PicturePtr image(int index, ColorSpace space);
-    /// Of a buffer view that no image of the file names.
+    /// The picture in a buffer view that no image of the file names.
     PicturePtr view(int view, ColorSpace space, const std::string& label);
-    /// Says what image `index` is.
+    /// Remembers that image `index` is this picture.
     void remember_picture(int index, const PicturePtr& picture);
 
 private:
@@ -54,10 +54,11 @@ private:
 /// Adds each picture once.
 class GltfPictureWriter {
 public:
-    /// `embed`: into buffer views; else images name the store's files ("../i/<16 hex>.png").
+    /// `embed`: pictures go into buffer views; else images name the store's files
+    /// ("../i/<16 hex>.png").
     GltfPictureWriter(tinygltf::Model& model, bool embed) : model_(model), embed_(embed) {}
 
-    /// Index of the image. The picture must be resident when it is embedded.
+    /// The index of the image. The picture must be resident when it is embedded.
     int image(const Picture& picture);
     /// The buffer view of a picture that glTF has no word for.
     int view(const Picture& picture);
@@ -66,7 +67,7 @@ private:
     tinygltf::Model& model_;
     bool embed_;
     std::map<Hash, int> images_;  // by the hash of the picture
-    std::map<Hash, int> views_;   // likewise
+    std::map<Hash, int> views_;   // by the hash of the picture
     std::map<Hash, int> view_of_content_;
     std::map<int, int> image_of_view_;
 };

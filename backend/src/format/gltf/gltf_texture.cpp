@@ -97,6 +97,8 @@ std::array<double, 6> to_picture_of(const TextureTransform& transform) {
 }
 
 std::optional<TextureTransform> transform_of(const std::array<double, 6>& m) {
+    // The most by which the cosine of the two directions may differ from 0.
+    // Taste: a larger value takes more shears for turns, and is off by as much.
     constexpr double kTolerance = 1e-6;
     const glm::dvec2 first(m[0], m[3]);
     const glm::dvec2 second(m[1], m[4]);

@@ -13,8 +13,11 @@
 namespace lodestone::format {
 namespace {
 
+// Law: the luminous efficacy of 540 THz, which defines the candela (SI).
 constexpr double kLumenPerWatt = 683;
-constexpr double kAspect = 16.0 / 9;  // where a camera leaves it open
+// The width over the height where a camera leaves it open.
+// Taste: that of most pictures; a larger value shows more at both sides.
+constexpr double kAspect = 16.0 / 9;
 
 bool positive(double value) {
     return std::isfinite(value) && value > 0;

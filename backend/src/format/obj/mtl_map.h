@@ -12,7 +12,8 @@
 
 namespace lodestone::format {
 
-/// MTL's -bm is a factor of no unit; 1 is taken as the largest dents of plaster or bark.
+/// The depth of bumps that MTL's -bm of 1 means, in metres; the format gives it no unit.
+/// Taste: the largest dents of plaster or bark; a larger value makes all bumps deeper.
 inline constexpr double kBumpMetres = 0.01;
 
 /// A number 0...1 of a material and its keyword.

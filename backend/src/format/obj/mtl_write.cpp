@@ -91,8 +91,9 @@ private:
         out_.pictures.emplace(name, texture.picture);
     }
 
-    /// As MTL can say it: the picture's own values times `limit`; Luma: its one number; Alpha:
-    /// that, or the picture's alpha if it has one. Without a picture when that is not to be had.
+    /// The texture in the words of MTL: the picture's own values times `limit`; for Luma its one
+    /// number; for Alpha that, or the picture's alpha if it has one. It has no picture when that
+    /// fails.
     BakedTexture drawn(const Texture& texture, ColorSpace space, TextureChannel channel,
                        bool bright = false) {
         if (!texture || texture.picture->bytes.empty())

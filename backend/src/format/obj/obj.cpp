@@ -19,9 +19,10 @@
 namespace lodestone::format {
 namespace {
 
+// Law: indices count from 0 here.
 constexpr int32_t kNone = -1;
 
-/// What a corner of a face names, counted from 0; kNone = not given.
+/// The indices that a corner of a face names, counted from 0; kNone: not given.
 struct ObjCorner {
     int32_t position = kNone;
     int32_t uv = kNone;
@@ -172,7 +173,10 @@ private:
             for (std::string_view word = next_word(names); !word.empty(); word = next_word(names))
                 files.emplace_back(word);
         }
+        // Taste: a larger number lets a hostile file read more files.
         constexpr size_t kMostLibraries = 256;
+        // The most bytes of a library.
+        // Taste: a larger number lets a hostile file fill more memory.
         constexpr uint64_t kMostBytes = uint64_t{64} << 20u;
         for (const std::string& file : files) {
             if (libraries_.size() >= kMostLibraries || !libraries_.insert(file).second)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines: walking through text files of words and numbers (OBJ, MTL).
+// Text lines: walking through text files of words and numbers (OBJ, MTL).
 #pragma once
 
 #include <charconv>
@@ -21,7 +21,7 @@ inline std::string_view trimmed(std::string_view words) {
     return words;
 }
 
-/// Takes the first word off.
+/// Takes the first word off and returns it; empty: there is none.
 inline std::string_view next_word(std::string_view& words) {
     words = trimmed(words);
     size_t end = 0;
@@ -57,7 +57,7 @@ class LineReader {
 public:
     explicit LineReader(std::string_view bytes) : bytes_(bytes) {}
 
-    /// False at the end. The line is valid until the next call.
+    /// Gives the next line; false at the end. The line is valid until the next call.
     bool next(std::string_view& line) {
         if (at_ >= bytes_.size())
             return false;
@@ -78,7 +78,8 @@ public:
         return true;
     }
 
-    /// Of the line that next() gave last, counted from 1; a joined line has its last number.
+    /// The number of the line that next() gave last, counted from 1; a joined line has the number
+    /// of its last piece.
     size_t number() const { return number_; }
 
 private:
