@@ -11,7 +11,8 @@ using namespace lodestone::capi;
 
 namespace {
 
-/// What is known of a cut besides it, with what its classes of rays meet.
+/// Fills in the facts about a cut: its view, its largest error and the cuts that its classes of
+/// rays meet.
 void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
     made.view = std::move(view);
     made.structured = model.structured;
@@ -86,7 +87,8 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
         made_for.pixel_error = found.pixel_error;
         made->cut = std::move(found.cut);
         finish(*model, *made, std::move(made_for), progress);
-        // What classes meet besides is small; where it is too much, they meet what the camera sees
+        // The representations that classes meet besides the camera's are small. Where even they are
+        // too much for the budget, the classes meet those of the camera.
         if (found.fits && given.bytes > 0 && made->resident.bytes > given.bytes) {
             View plain = made->view;
             plain.modifiers.ray_classes = 0;

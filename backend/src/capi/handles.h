@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Handles: what the opaque pointers point to, and translation of small structs.
+// Handles: the structs behind the opaque pointers, and the translation of small structs.
 #pragma once
 
 #include "lodestone/lodestone.h"
@@ -20,27 +20,27 @@
 
 struct lds_model {
     lodestone::Model model;
-    uint32_t generation = 0;  // of its ids; no two models of a process share one
+    uint32_t generation = 0;  // that of its ids; no two models of a process share one
     std::vector<lodestone::PicturePtr> pictures;  // added, by index
     lodestone::Problems problems;
     std::optional<lodestone::segment::Store> store;  // where meshes that are not resident lie
     std::unordered_map<std::string, uint32_t> by_uid;
-    /// Finest meshes by content, for those that are added next.
+    /// The finest meshes by content, so that equal ones that are added later share them.
     std::unordered_map<lodestone::Hash, std::weak_ptr<const lodestone::Mesh>> meshes;
     bool summarized = false;  // assemblies' bounds, costs and hashes are up to date
     uint64_t structured = 0;  // how often what groups place was put into other groups
-    /// For choosing; reset when the model changes. Cuts keep it.
+    /// The table for choosing; reset when the model changes. Cuts keep it.
     std::shared_ptr<const lodestone::choose::ChoiceTable> table;
-    /// How meshes are shaped, alone and beside a box or ellipsoid, by their hashes.
+    /// The shapes of meshes, alone and beside a box or ellipsoid, by their hashes.
     std::map<std::pair<lodestone::Hash, lodestone::Hash>, lodestone::choose::RayShape> shapes;
 
-    /// Index of an id; throws Error(StaleId) for another model's.
+    /// The index of an id; throws Error(StaleId) for another model's.
     lodestone::ObjectIndex index_of(lds_object object) const;
     lds_object id_of(lodestone::ObjectIndex index) const { return {index, generation}; }
     lodestone::Object& at(lds_object object) { return model.objects[index_of(object)]; }
-    /// Brings assemblies' summaries up to date.
+    /// Brings the summaries of assemblies up to date.
     void summarize();
-    /// What choosing reads, up to date.
+    /// The table that choosing reads, up to date. Throws Error(InvalidArgument) without a root.
     std::shared_ptr<const lodestone::choose::ChoiceTable> table_for(lodestone::KindMask kinds);
     /// Makes a representation resident.
     void load(lodestone::Representation& representation);
@@ -52,19 +52,19 @@ struct lds_model {
 
 struct lds_cut {
     lodestone::choose::Cut cut;
-    std::vector<lodestone::choose::RayCut> rays;  // of the classes asked for
+    std::vector<lodestone::choose::RayCut> rays;  // those of the classes asked for
     lodestone::choose::ResidentSize resident;     // for the camera and these
-    lodestone::View view;                         // that it was made for, with the threshold found
-    uint32_t generation = 0;                      // of the model it was made from
+    lodestone::View view;                         // it was made for this, with the threshold found
+    uint32_t generation = 0;                      // that of the model it was made from
     uint64_t structured = 0;                      // the model's then
-    std::shared_ptr<const lodestone::choose::ChoiceTable> table;  // that it was chosen from
-    std::unique_ptr<lodestone::choose::CutStepper> stepper;  // of the table; null: not stepped yet
+    std::shared_ptr<const lodestone::choose::ChoiceTable> table;  // it was chosen from this one
+    std::unique_ptr<lodestone::choose::CutStepper> stepper;  // on the table; null: not stepped yet
     std::vector<std::string> paths;                          // by choice; those asked for
     std::string largest_error_name;
     std::vector<glm::dvec3> colors;  // linear, by choice; empty: by kind and LOD number
     lodestone::view::ViewerSurface surface;
     std::vector<lodestone::view::ViewerBatch> batches;
-    std::vector<glm::dvec3> batch_colors;  // that they were made with
+    std::vector<glm::dvec3> batch_colors;  // the colors that the batches were made with
 };
 
 namespace lodestone::capi {
@@ -72,16 +72,17 @@ namespace lodestone::capi {
 glm::dvec3 vector(const double values[3], const char* what);
 void copy(const glm::dvec3& from, double to[3]);
 std::string name_of(const char* text);
-/// `model`: whose objects lenses may list.
+/// Translates a view. Lenses may list objects of `model`.
 View view_of(const lds_view* view, const lds_model* model);
 Camera camera_of(const lds_camera* camera);
-/// What bends quality in a picture of this size.
+/// Translates the modifiers of quality, for a picture of this size in pixels.
 QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, int width,
                               int height);
-/// Views into the caller's memory; throws for lengths and indices that do not fit.
+/// Translates polygons to views into the caller's memory; throws Error(InvalidArgument) for lengths
+/// and indices that do not fit.
 PolygonMesh faces_of(const lds_faces_view* view);
 lds_model* new_model();
-/// Throws unless it is there and long enough.
+/// The info of an object. Throws Error(InvalidArgument) for null and for one that lacks fields.
 const lds_object_info& object_info(const lds_object_info* info);
 /// Adds an object of that uid; throws when the uid is empty or taken.
 ObjectIndex add_object(lds_model& model, const lds_object_info* info, Representation finest);

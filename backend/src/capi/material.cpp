@@ -14,6 +14,7 @@ using namespace lodestone::capi;
 
 namespace {
 
+// Taste: a larger number lets larger pictures fill more memory.
 constexpr uint64_t kMostPictureBytes = uint64_t{1} << 30u;
 
 std::string bytes_of(const lds_picture& given, const std::string& name) {
@@ -154,6 +155,8 @@ uint32_t index_of(lds_model& model, const PicturePtr& made) {
 }
 
 std::vector<image::BakeStep> steps_of(const lds_bake& given) {
+    // The most entries of a step's table.
+    // Taste: as many as colors of 16 bits have values; a larger number takes more memory.
     constexpr size_t kMostTable = 1u << 16u;
     std::vector<image::BakeStep> steps;
     if (given.step_count > image::kMostBakeSteps)

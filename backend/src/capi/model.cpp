@@ -29,6 +29,7 @@ Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
         require(view.triangles, "mesh.triangles");
     const uint32_t* corners = view.corners != nullptr ? view.corners : view.triangles;
     const size_t corner_count = view.corners != nullptr ? view.corner_count : view.vertex_count;
+    // Law: indices have 32 bits, and this leaves room for sums of two.
     constexpr size_t kMost = size_t{1} << 31u;
     if (view.vertex_count > kMost || view.triangle_count > kMost)
         fail(Status::InvalidArgument, "a mesh of ", view.vertex_count, " vertices and ",
@@ -52,7 +53,9 @@ Mesh mesh_of(const lds_mesh_view& view, size_t material_count) {
     }
     // Chains of the vertices made so far from each position; almost always one or two long.
     constexpr uint32_t kEnd = ~uint32_t{0};
-    constexpr size_t kMostTries = 256;  // for an equal vertex, the last made first
+    // How many vertices at a position are compared with a new one, the last made first.
+    // Taste: a larger number joins more vertices of a hostile mesh, in time in proportion.
+    constexpr size_t kMostTries = 256;
     std::vector<uint32_t> first(split ? view.vertex_count : 0, kEnd);
     std::vector<uint32_t> next;
     std::vector<uint32_t> made_from;  // the corner a vertex was made from
@@ -145,6 +148,7 @@ Mesh mesh_of(const lds_strands_view& view, size_t material_count) {
     }
     if (view.strand_count > 0)
         require(view.counts, "strands.counts");
+    // Law: indices have 32 bits, and this leaves room for sums of two.
     constexpr size_t kMost = size_t{1} << 31u;
     if (view.point_count > kMost || view.strand_count > kMost)
         fail(Status::InvalidArgument, view.strand_count, " strands of ", view.point_count,

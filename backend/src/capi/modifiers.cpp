@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What bends quality, in the C interface: translation; what makes no sense is refused when
-// choosing.
+// Quality modifiers in the C interface: their translation. Values that make no sense are refused
+// when choosing.
 #include "capi/guard.h"
 #include "capi/handles.h"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a model holds, for the C interface: totals, objects, representations, occurrences, problems.
+// The contents of a model for the C interface: totals, objects, representations, occurrences and
+// problems.
 #include "capi/guard.h"
 #include "capi/handles.h"
 

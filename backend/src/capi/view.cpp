@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a picture is taken with, in the C interface: cameras, lights, world, views.
+// Views in the C interface, and all that a picture is taken with: cameras, lights, world.
 #include "base/maths.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
