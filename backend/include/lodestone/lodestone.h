@@ -54,7 +54,7 @@ typedef enum lds_status {
     LDS_ERROR_POVRAY_FAILED = 31
 } lds_status;
 
-/* What a long call is doing now. */
+/* The stage that a long call is in. */
 typedef enum lds_stage {
     LDS_STAGE_NONE = 0,
     LDS_STAGE_EXTRACT = 1,
@@ -78,9 +78,9 @@ typedef struct lds_job {
 /* ---- Library ------------------------------------------------------------------------------ */
 
 LDS_API uint32_t lds_abi_version(void);
-/* "0.1.0" */
+/* The version, as "0.1.0". */
 LDS_API const char* lds_version(void);
-/* "INVALID_ARGUMENT", ...; "UNKNOWN" for a number that is no status. */
+/* The name of a status, "INVALID_ARGUMENT" and so on; "UNKNOWN" for a number that is no status. */
 LDS_API const char* lds_status_name(lds_status status);
 /* The sentence of this thread's last failed call; "" after a success. Valid until its next call. */
 LDS_API const char* lds_last_error_text(void);
@@ -91,7 +91,7 @@ LDS_API lds_status lds_rays_check(void);
 
 typedef struct lds_model lds_model;
 
-/* An object of one model. {0, 0} is none. */
+/* The id of an object of one model. {0, 0} is none. */
 typedef struct lds_object {
     uint32_t index;
     uint32_t generation;
@@ -357,20 +357,20 @@ LDS_API lds_status lds_model_read(const char* path, lds_model** out_model);
 /* Writes the finest representations as .obj, .ply or .glb, told by the name's ending. */
 LDS_API lds_status lds_model_write(lds_model* model, const char* path);
 
-/* out_index: of the picture, counted from 0; a picture with the same content keeps its first index.
-   BAD_FILE, IO. */
+/* Adds a picture. out_index: its index, counted from 0; a picture with the same content keeps its
+   first index. BAD_FILE, IO. */
 LDS_API lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
                                          uint32_t* out_index);
 /* The mean of a texture's value over its whole picture, colors weighted by alpha. A single number
    is the first of out_color with a channel other than COLOR. */
 LDS_API lds_status lds_model_texture_mean(lds_model* model, const lds_texture* texture,
                                           double out_color[3]);
-/* What a step does with the results a, b, c of earlier steps. */
+/* The operation of a step on the results a, b, c of earlier steps. */
 typedef enum lds_bake_op {
     LDS_BAKE_CONSTANT = 0, /* value */
     LDS_BAKE_TEXEL = 1,    /* color and alpha of texture args[0], through its mapping */
     LDS_BAKE_CHANNEL = 2,  /* a's channel value[0] (0...3), in all channels */
-    LDS_BAKE_LUMA = 3,     /* of a, in all channels */
+    LDS_BAKE_LUMA = 3,     /* the luma of a, in all channels */
     LDS_BAKE_COMBINE = 4,  /* red of a, green of b, blue of c */
     LDS_BAKE_ADD = 5,
     LDS_BAKE_SUBTRACT = 6,
@@ -493,13 +493,13 @@ LDS_API lds_status lds_model_group_by_position(lds_model* model, lds_object grou
 typedef struct lds_structure_options {
     uint32_t struct_size;
     uint32_t fewest_children; /* groups of at most this many are left alone; usual 64, least 2 */
-    uint32_t most_children;   /* of a group; at least 8, usual 64 */
+    uint32_t most_children;   /* the most children of a group; at least 8, usual 64 */
     uint32_t orders;          /* random orders that are tried, 1 to 1024; usual 4. More: a slightly
                                  lower cost, linearly more time */
     double similarity;        /* weight of looks (color, size, shape, orientation) beside position;
                                  0: position alone, usual 0.1 */
-    double group_cost;        /* what a group costs, counted in children; usual 8. Larger: fewer and
-                                 larger groups */
+    double group_cost;        /* the cost of a group, counted in children; usual 8. Larger: fewer
+                                 and larger groups */
     uint64_t seed;
     int32_t threads; /* 0 = all */
 } lds_structure_options;
@@ -507,14 +507,14 @@ LDS_API lds_status lds_structure_options_default(lds_structure_options* options)
 
 typedef struct lds_structure_report {
     uint32_t struct_size;
-    uint64_t structured; /* of the groups given */
-    uint64_t made;       /* groups */
+    uint64_t structured; /* the given groups that were structured */
+    uint64_t made;       /* the groups that were made */
     double cost_before;  /* expected number of children that a random ray through a group is tested
                             against, summed over the groups given */
     double cost_after;
     double cpu_s;
 } lds_structure_report;
-/* Puts the children of flat groups into nested groups of what is near and looks alike, by
+/* Puts the children of flat groups into nested groups of things that are near and look alike, by
    inserting one child after the other where the cost grows least. Occurrences stay exactly where
    they are. Children that deform, or hold something hidden from some rays, are not moved. The
    result depends neither on the order of the children nor on the number of threads. groups null:
@@ -528,9 +528,9 @@ LDS_API lds_status lds_model_structure(lds_model* model, const lds_object* group
 typedef struct lds_loose_options {
     uint32_t struct_size;
     int32_t always;            /* 1: also meshes that hardly gain by it */
-    uint32_t fewest_triangles; /* of a cluster, usual 8192. Larger: fewer clusters, a faster build.
-                                  Smaller: detail follows distance more closely */
-    uint32_t most_clusters;    /* of one mesh, on average; 2 or more, usual 128 */
+    uint32_t fewest_triangles; /* triangles of a cluster; usual 8192. Larger: fewer clusters, a
+                                  faster build. Smaller: detail follows distance more closely */
+    uint32_t most_clusters;    /* clusters of one mesh, on average; 2 or more, usual 128 */
     int32_t threads;           /* 0 = all */
 } lds_loose_options;
 LDS_API lds_status lds_loose_options_default(lds_loose_options* options);
@@ -563,8 +563,8 @@ typedef struct lds_totals {
     uint32_t struct_size;
     uint64_t objects;          /* reachable from the root, groups included; an object split into
                                   loose parts counts once */
-    uint64_t occurrences;      /* of leaves: each path counts */
-    uint64_t triangles_placed; /* at full detail */
+    uint64_t occurrences;      /* those of leaves: each path counts */
+    uint64_t triangles_placed; /* the triangles of all occurrences at full detail */
     uint64_t triangles_unique;
     uint64_t representations;
 } lds_totals;
@@ -596,8 +596,8 @@ typedef struct lds_placement {
     lds_object object;
     double transform[12]; /* the object's frame -> the group's */
     const char* name;
-    uint32_t hidden;   /* from these ray classes (lds_ray_class bits) */
-    uint32_t coarsest; /* as decided about it */
+    uint32_t hidden;   /* the ray classes that do not see it (lds_ray_class bits) */
+    uint32_t coarsest; /* the largest LOD number that it may be drawn with */
     double importance;
 } lds_placement;
 /* position: below the summary's child_count. */
@@ -609,9 +609,9 @@ typedef struct lds_representation {
     uint32_t struct_size;
     int32_t kind;     /* lds_kind */
     double error;     /* metres in the object's frame */
-    double max_error; /* the largest distance behind it */
+    double max_error; /* the largest distance behind the error's quantile */
     uint64_t triangles;
-    uint64_t bytes; /* in POV-Ray's memory */
+    uint64_t bytes; /* the bytes of POV-Ray's memory that it takes */
     uint64_t hash;
 } lds_representation;
 LDS_API lds_status lds_model_representation(lds_model* model, lds_object object, uint32_t lod,
@@ -683,7 +683,7 @@ LDS_API lds_status lds_measure_options_default(lds_measure_options* options);
 typedef struct lds_attributes {
     uint32_t struct_size;
     double visible_area; /* VSA, m^2; open sheets count both sides */
-    double surface_area; /* of all sides that could be seen, if nothing hid them */
+    double surface_area; /* m^2 of all sides that could be seen, if nothing hid them */
     double centroid[3];
     double inertia[6]; /* xx yy zz xy yz zx about the centroid, m^4 */
     double normal_moment;
@@ -708,8 +708,8 @@ typedef enum lds_simplify_mode {
 
 typedef struct lds_simplify_options {
     uint32_t struct_size;
-    double ratio;       /* of the triangles, 0...1; 0: not used */
-    uint64_t triangles; /* in the whole model; 0: not used */
+    double ratio;       /* the share of the triangles to keep, 0...1; 0: not used */
+    uint64_t triangles; /* the triangles to keep in the whole model; 0: not used */
     double error;       /* metres: the fewest triangles within it; 0: not used */
     int32_t measure;    /* 1: measure the error of the result; error and pixels always do */
     uint64_t seed;
@@ -727,9 +727,9 @@ typedef struct lds_simplify_report {
     uint32_t struct_size;
     uint64_t triangles_before;
     uint64_t triangles;
-    double cpu_s;     /* of the simplification alone, all threads */
+    double cpu_s;     /* CPU seconds of the simplification alone, all threads */
     double error;     /* metres in the model's frame; negative when it was not measured */
-    double max_error; /* likewise */
+    double max_error; /* metres: the largest distance; negative when it was not measured */
 } lds_simplify_report;
 /* Replaces the finest mesh of every object. Exactly one of ratio, triangles, error, pixels is
    given. */
@@ -742,22 +742,22 @@ typedef struct lds_build_options {
     uint32_t struct_size;
     double level_ratio; /* triangles of a level over those of the next finer one; usual 0.4. Larger:
                            more levels, a closer fit to every distance, more time and disk */
-    uint64_t rays;      /* to measure an object with; usual 4096 */
-    uint32_t samples;   /* to measure an error with, in each direction; usual 2048 */
+    uint64_t rays;      /* rays that measure an object; usual 4096 */
+    uint32_t samples;   /* points that measure an error, in each direction; usual 2048 */
     uint64_t group_triangles; /* most triangles of a group's finest stand-in; usual 40000 */
     uint64_t seed;
     int32_t threads;         /* 0 = all */
-    int32_t rebuild;         /* 1: build also what is up to date */
-    const lds_object* scope; /* build only what is reachable from these. Stale objects elsewhere
-                                keep their finest level alone, and stay stale */
+    int32_t rebuild;         /* 1: build also objects that are up to date */
+    const lds_object* scope; /* build only objects that are reachable from these. Stale objects
+                                elsewhere keep their finest level alone, and stay stale */
     size_t scope_count;      /* 0: everything */
     /* The same scene in a few frames, the same frames in every call: an object that deforms is
        collapsed once, to suit all of them, and its levels follow it in every frame. Objects are
        matched by uid; one whose present faces are in none of the poses is drawn at full detail. */
     const struct lds_model* const* poses;
     size_t pose_count;           /* 0: everything that deforms is drawn at full detail */
-    const struct lds_view* view; /* build only what saves this picture most time; the rest stays
-                                    stale. NULL: everything */
+    const struct lds_view* view; /* build only the objects that save this picture most time; all
+                                    others stay stale. NULL: everything */
     double share; /* with a view: the most time to build, as a share of the picture's own time (both
                      estimated from counts); usual 0.2 */
 } lds_build_options;
@@ -765,28 +765,29 @@ LDS_API lds_status lds_build_options_default(lds_build_options* options);
 
 typedef struct lds_build_report {
     uint32_t struct_size;
-    uint64_t objects;         /* reachable, of which something is seen */
-    uint64_t built;           /* of these, new or stale */
-    uint64_t representations; /* in the store, finest included */
-    uint64_t triangles;       /* of the stale objects' finest meshes */
+    uint64_t objects;         /* reachable objects of which something is seen */
+    uint64_t built;           /* those of them that were new or stale */
+    uint64_t representations; /* those in the store, finest included */
+    uint64_t triangles;       /* the triangles of the stale objects' finest meshes */
     uint64_t bytes_written;
     double wall_s;
     double cpu_s;
     uint64_t left; /* objects still stale, because options.view does not need them */
 } lds_build_report;
 
-/* What drawing costs POV-Ray 3.7: what levels are built by (a store whose levels were built by other
-   costs is stale), and what the bytes and the times that are told count. */
+/* The costs of drawing in POV-Ray 3.7. Levels are built by them (a store whose levels were built by
+   other costs is stale), and the bytes and times that are told are theirs. */
 typedef struct lds_cost_model {
     uint32_t struct_size;
-    uint64_t triangle_bytes;   /* of a mesh, however often it is drawn */
-    uint64_t primitive_bytes;  /* of a box, an ellipsoid, each solid of a composite */
-    uint64_t occurrence_bytes; /* of each occurrence, whatever it draws */
+    uint64_t triangle_bytes;   /* bytes of a mesh's triangle, however often it is drawn */
+    uint64_t primitive_bytes;  /* bytes of a box, an ellipsoid, each solid of a composite */
+    uint64_t occurrence_bytes; /* bytes of each occurrence, whatever it draws */
     double parse_triangle_s;   /* CPU seconds to read a triangle */
 } lds_cost_model;
 LDS_API lds_status lds_cost_model_default(lds_cost_model* costs);
 
-/* What lds_model_build would do: fills objects, built, triangles and wall_s (an estimate). */
+/* Tells how much lds_model_build would do: fills objects, built, triangles and wall_s (an
+   estimate). */
 LDS_API lds_status lds_model_build_estimate(lds_model* model, const char* store,
                                             const lds_build_options* options,
                                             lds_build_report* out_report);
@@ -801,7 +802,7 @@ LDS_API lds_status lds_model_build(lds_model* model, const char* store,
 /* ---- Choosing ------------------------------------------------------------------------------- */
 
 typedef enum lds_lens_shape { LDS_LENS_SHAPE_SPHERE = 0, LDS_LENS_SHAPE_BOX = 1 } lds_lens_shape;
-/* What a lens does, by its list of objects. */
+/* The meaning of a lens's list of objects. */
 typedef enum lds_lens_filter {
     LDS_LENS_FILTER_ALL = 0,    /* no list: everything inside is refined */
     LDS_LENS_FILTER_REFINE = 1, /* only the listed objects, and all below them, are refined */
@@ -836,7 +837,7 @@ typedef struct lds_screen_lens {
     const char* name;
 } lds_screen_lens;
 
-/* What decides whether a level is good enough (5.2.2), and so the unit of lds_view.pixel_error. */
+/* The measure by which a level is good enough (5.2.2), and so the unit of lds_view.pixel_error. */
 typedef enum lds_criterion {
     LDS_CRITERION_RESOLUTION = 0, /* pixels: the error of the level on screen */
     LDS_CRITERION_FEATURE = 1,    /* share of the picture that the largest missing feature covers */
@@ -860,8 +861,8 @@ typedef enum lds_rays {
     LDS_RAYS_RADIOSITY = 4
 } lds_rays;
 
-/* What makes single things finer or coarser than the view's threshold (5.5.5). All factors, and the
-   placements' importances, are multiplied; the product is clamped to 1/64 ... 64. */
+/* The factors that make single things finer or coarser than the view's threshold (5.5.5). All of
+   them, and the placements' importances, are multiplied; the product is clamped to 1/64 ... 64. */
 typedef struct lds_modifiers {
     uint32_t struct_size;
     int32_t criterion;      /* lds_criterion */
@@ -907,8 +908,9 @@ LDS_API lds_status lds_cut_step(lds_model* model, lds_cut* cut, const lds_view* 
 /* The most that a cut may cost. */
 typedef struct lds_budget {
     uint32_t struct_size;
-    uint64_t triangles; /* placed; 0: any number */
-    uint64_t bytes; /* of POV-Ray's memory, shared representations counted once; 0: any number */
+    uint64_t triangles; /* triangles as placed; 0: any number */
+    uint64_t bytes;     /* bytes of POV-Ray's memory, shared representations counted once; 0: any
+                           number */
 } lds_budget;
 typedef struct lds_budget_report {
     uint32_t struct_size;
@@ -927,8 +929,8 @@ typedef struct lds_cut_summary {
     uint64_t occurrences; /* chosen ones, each drawn once */
     uint64_t opened;      /* groups drawn by their children */
     uint64_t originals;   /* occurrences drawn at LOD 0 */
-    uint64_t triangles;   /* placed */
-    uint64_t bytes;       /* in POV-Ray's memory */
+    uint64_t triangles;   /* triangles as placed */
+    uint64_t bytes;       /* the bytes of POV-Ray's memory that they take */
     double largest_error_px;
     const char* largest_error_name;               /* path of placements */
     uint64_t largest_error_choice;                /* its position among the choices */
@@ -963,7 +965,7 @@ LDS_API const char* lds_cut_choice_path(lds_cut* cut, size_t position);
    coarser level (coarser_error_px * coarser_factor) is not, or a pin forbids that level. */
 typedef struct lds_reason {
     uint32_t struct_size;
-    uint32_t lod;      /* as the choice's */
+    uint32_t lod;      /* the LOD number of the choice */
     double z;          /* metres from the eye to its bound, at least the near clip */
     double pixel;      /* size of a pixel at that distance, metres */
     double error;      /* metres in the object's frame */
@@ -971,7 +973,7 @@ typedef struct lds_reason {
     double error_px;   /* error * stretch / pixel */
     double factor;     /* product of the next eight, clamped to 1/64 ... 64; infinite where a lens
                           hides part of it */
-    double importance; /* of its placements; this and the next three refine */
+    double importance; /* that of its placements; this and the next three refine */
     double demand;     /* largest importance below it; infinite where a level limit lies below */
     double lenses;
     double screen_lenses;
@@ -991,21 +993,21 @@ typedef struct lds_reason {
 /* model: the one the cut was made from, with the same levels. */
 LDS_API lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t position,
                                          lds_reason* out_reason);
-/* What a class of rays meets instead of what the camera sees. */
+/* The representations that a class of rays meets instead of the camera's: their number and size. */
 typedef struct lds_ray_summary {
     uint32_t struct_size;
     uint32_t rays;           /* the class: one of lds_rays */
     uint64_t own;            /* coarser representations of occurrences and groups that it meets */
-    uint64_t occurrences;    /* that it meets in all */
-    uint64_t triangles;      /* placed, of these */
-    uint64_t bytes;          /* in POV-Ray's memory, of these */
+    uint64_t occurrences;    /* all occurrences that it meets */
+    uint64_t triangles;      /* their triangles as placed */
+    uint64_t bytes;          /* the bytes of POV-Ray's memory that they take */
     double largest_error_px; /* upper bound: how far they shift shadow edges or mirror images */
     /* Choices that the class meets as the camera does, and why: */
     uint64_t kept_need;     /* nothing coarser is good enough */
     uint64_t kept_shape;    /* a stand-in would shadow or mirror its own original */
     uint64_t kept_contact;  /* something else is too near */
-    uint64_t all_triangles; /* placed, that the camera or any class meets */
-    uint64_t all_bytes;     /* in POV-Ray's memory, of these */
+    uint64_t all_triangles; /* triangles as placed that the camera or any class meets */
+    uint64_t all_bytes;     /* the bytes of POV-Ray's memory that they take */
 } lds_ray_summary;
 /* rays: one class. For a class that the cut's modifiers do not ask for, the camera's numbers. */
 LDS_API lds_status lds_cut_get_rays(const lds_cut* cut, uint32_t rays,
@@ -1018,16 +1020,16 @@ typedef enum lds_met {
     LDS_MET_SHAPE = 4,  /* as the camera's: a stand-in would shadow or mirror its own original */
     LDS_MET_CONTACT = 5 /* as the camera's: something else is too near */
 } lds_met;
-/* What a class meets of one choice. */
+/* The representation that a class of rays meets for one choice. */
 typedef struct lds_ray_choice {
     uint32_t struct_size;
     int32_t met;       /* lds_met */
-    lds_object object; /* whose representation it meets */
+    lds_object object; /* the object whose representation it meets */
     uint32_t lod;
     int32_t kind;
-    double scale;    /* of a box or ellipsoid about its center, so that it lies inside the original
-                        (shadows) or around it (reflections) */
-    double error;    /* metres in the world; 0 where it meets what the camera sees */
+    double scale;    /* the factor of a box or ellipsoid about its center, so that it lies inside
+                        the original (shadows) or around it (reflections) */
+    double error;    /* metres in the world; 0 where it meets the camera's representation */
     double error_px; /* upper bound: how far edges of its shadow or mirror image are off */
 } lds_ray_choice;
 LDS_API lds_status lds_cut_choice_rays(lds_model* model, const lds_cut* cut, size_t position,
@@ -1037,7 +1039,7 @@ typedef enum lds_drawn {
     LDS_DRAWN_MISSING = 0,  /* not at all: the model has no such occurrence */
     LDS_DRAWN_ITSELF = 1,   /* by a level of its own */
     LDS_DRAWN_IN_GROUP = 2, /* by a stand-in for a group around it */
-    LDS_DRAWN_OPENED = 3,   /* it is a group, drawn by what is in it */
+    LDS_DRAWN_OPENED = 3,   /* it is a group, drawn by its children */
     LDS_DRAWN_NOT = 4       /* not at all: hidden from all rays, or by a lens */
 } lds_drawn;
 /* Finds how an occurrence is drawn: that of `object` whose transform is nearest to `world` (within
@@ -1061,7 +1063,7 @@ LDS_API lds_status lds_model_release_meshes(lds_model* model);
 LDS_API lds_status lds_cut_set_colors(lds_cut* cut, const double* colors, size_t count);
 /* Gives each choice a unique color, from which lds_image_compare_shown finds it in a picture. */
 LDS_API lds_status lds_cut_set_identities(lds_cut* cut);
-/* Makes an unindexed triangle list of what cameras see of the cut, of about most_triangles at
+/* Makes an unindexed triangle list of all that cameras see of the cut, of about most_triangles at
    most: if there are more, coarser levels or boxes are shown. Kept with the cut until the next
    call; 0 frees the list. */
 LDS_API lds_status lds_cut_make_surface(lds_model* model, lds_cut* cut, uint64_t most_triangles,
@@ -1071,9 +1073,9 @@ LDS_API lds_status lds_cut_make_surface(lds_model* model, lds_cut* cut, uint64_t
 LDS_API lds_status lds_cut_surface_copy(const lds_cut* cut, float* out_corners, uint8_t* out_colors,
                                         size_t capacity);
 
-/* Divides what cameras see of a cut into batches for a viewer that keeps them on the GPU. Batches
-   of different cuts with equal keys show the same (colors of lds_cut_set_colors included), so the
-   viewer creates only those whose key is new. Kept with the cut until the next call. */
+/* Divides all that cameras see of a cut into batches for a viewer that keeps them on the GPU.
+   Batches of different cuts with equal keys show the same (colors of lds_cut_set_colors included),
+   so the viewer creates only those whose key is new. Kept with the cut until the next call. */
 LDS_API lds_status lds_cut_make_batches(lds_model* model, lds_cut* cut, size_t* out_count);
 /* out_keys uint64[count], never 0; out_triangles uint64[count], an estimate for composites. */
 LDS_API lds_status lds_cut_batch_keys(const lds_cut* cut, uint64_t* out_keys,
@@ -1111,7 +1113,7 @@ typedef struct lds_povray_options {
     int32_t threads;      /* 0 = all */
     const char* program;  /* null: $LODESTONE_POVRAY, else povray on the PATH */
     /* How finely the picture is shaded; 0 is the usual value. Larger errors are cheaper. */
-    double antialias_threshold; /* FINAL: difference of neighbors that adds samples; usual .1 */
+    double antialias_threshold; /* FINAL: difference of neighbors that adds samples; usual 0.1 */
     int32_t antialias_depth;    /* FINAL: n, for n x n samples in such a pixel; usual 3 */
     int32_t trace_depth;        /* most mirrors and glass bodies one behind the other; usual 5 */
     int32_t area_samples; /* shadow rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows;
@@ -1125,16 +1127,16 @@ typedef struct lds_povray_options {
                              the view's. On average a point is off by about as many 255ths */
     double reflection_error; /* 255ths: rays that add less are not followed; usual 1 */
     double texture_error;    /* pixels that image textures may be blurred by; usual 0 */
-    int32_t bounces;         /* of indirect light, up to 8; usual 0: direct light only */
-    int32_t bounce_rays;     /* that gather indirect light; usual 200, OFF 60, REFERENCE 800 */
-    double bounce_error;     /* 0...1: how far gathered light is interpolated; usual .6, with OFF 1,
-                                with REFERENCE .4 */
+    int32_t bounces;         /* bounces of indirect light, up to 8; usual 0: direct light only */
+    int32_t bounce_rays;     /* rays that gather indirect light; usual 200, OFF 60, REFERENCE 800 */
+    double bounce_error;     /* 0...1: how far gathered light is interpolated; usual 0.6, with OFF
+                                1, with REFERENCE 0.4 */
 } lds_povray_options;
 LDS_API lds_status lds_povray_options_default(lds_povray_options* options);
 
 typedef struct lds_export_report {
     uint32_t struct_size;
-    uint64_t bytes; /* of all files the scene uses */
+    uint64_t bytes; /* bytes of all files the scene uses */
     uint64_t files;
     uint64_t written; /* files that were not there yet */
     double cpu_s;
@@ -1197,7 +1199,7 @@ typedef struct lds_difference {
     double mean; /* over the compared pixels; of display-encoded values 0...1 */
     double p999; /* 99.9 % quantile */
     double max;
-    double ssim; /* of luma, 11x11 Gaussian */
+    double ssim; /* structural similarity of luma, 11x11 Gaussian */
     uint64_t pixels;
 } lds_difference;
 /* mask (may be null): a picture whose alpha > 1/255 marks the covered pixels. */
@@ -1216,8 +1218,8 @@ LDS_API lds_status lds_image_compare_shown(const char* path_a, const char* path_
                                            size_t count_a, double* out_b, size_t count_b,
                                            int32_t bottom_up, float* out_picture, size_t capacity,
                                            lds_difference* out_difference);
-/* The color (linear) of a difference of display-encoded values: 0 black, .02 blue, .05 green, .1
-   yellow, .25 and more red. */
+/* The color (linear) of a difference of display-encoded values: 0 black, 0.02 blue, 0.05 green, 0.1
+   yellow, 0.25 and more red. */
 LDS_API lds_status lds_image_difference_color(double difference, double out_color[3]);
 
 #ifdef __cplusplus
