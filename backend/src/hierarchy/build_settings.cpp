@@ -4,7 +4,8 @@
 namespace lodestone::hierarchy {
 
 Hash hash_of(const BuildSettings& settings, const CostModel& costs) {
-    constexpr uint32_t kAlgorithms = 27;  // raised whenever the same settings give other stand-ins
+    // Law: the version of the algorithms, raised whenever the same settings give other stand-ins.
+    constexpr uint32_t kAlgorithms = 27;
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)

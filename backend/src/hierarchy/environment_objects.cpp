@@ -6,9 +6,16 @@
 namespace lodestone::hierarchy {
 namespace {
 
-constexpr double kMostHeight = 0.1;      // over the width of a ground
-constexpr double kMostFootprint = 0.25;  // of anything else, over the ground's
-constexpr double kEdge = 0.05;           // over the width: walls stand on the edge
+// The height of a ground over its width.
+// Taste: a larger value takes hills for grounds, and boxes, too.
+constexpr double kMostHeight = 0.1;
+// The largest footprint of another thing on a ground, over the ground's.
+// Taste: a larger value takes one of several plates for the ground of the others.
+constexpr double kMostFootprint = 0.25;
+// How far beyond the ground the middle of a thing on it may lie, over the width: walls stand on the
+// edge.
+// Taste: a larger value takes things that stand beside a plate for things on it.
+constexpr double kEdge = 0.05;
 
 const std::vector<Placement>& placements_of(const Object& group) {
     return group.representations[0].assembly().placements;

@@ -17,11 +17,20 @@
 namespace lodestone::hierarchy {
 namespace {
 
-constexpr size_t kMostPlaces = 8;  // of a flat thing that are looked at
+// How many places of a flat thing are looked at.
+// Taste: more find rarer layers, in time in proportion.
+constexpr size_t kMostPlaces = 8;
+// Taste: a larger number looks at larger models to the end, in memory in proportion.
 constexpr size_t kMostOccurrences = size_t{1} << 20;
-constexpr uint64_t kMostWork = 400'000'000;  // boxes and triangles looked at
+// The boxes and triangles that are looked at.
+// Taste: a larger number looks at larger models to the end, in time in proportion.
+constexpr uint64_t kMostWork = 400'000'000;
+// The points of a flat thing that are looked at.
+// Taste: more tell better how much of it lies on another, in time in proportion.
 constexpr int kSamples = 32;
-constexpr double kNearLayers = 1.0 / 16;  // over the width: see kLayerWidth in counted_error.cpp
+// The largest distance of two layers, over the width of the narrower one.
+// Law: 1 / kLayerWidth of counted_error.cpp.
+constexpr double kNearLayers = 1.0 / 16;
 
 /// The surface of a leaf.
 struct LeafSurface {
@@ -52,7 +61,7 @@ LeafSurface shape_of(std::shared_ptr<const Mesh> mesh, ObjectRole role) {
     return shape;
 }
 
-/// Uniform in area.
+/// Points of a mesh, uniform in area.
 std::vector<glm::dvec3> samples_of(const Mesh& mesh) {
     std::vector<double> up_to;
     double all = 0;
@@ -149,8 +158,11 @@ private:
         }
     }
 
-    /// By the lower end along x; what is long along it comes first, in a list of its own.
+    /// Sorts the places by their lower end along x; those that are long along it come first, in a
+    /// list of their own.
     void sort() {
+        // The length from which on a place is long, over that of the whole.
+        // Taste: a larger value compares more places with each other, a smaller one more with all.
         constexpr double kLong = 1.0 / 64;
         Box3 all;
         for (const PlacedLeaf& place : places_) {

@@ -8,8 +8,8 @@
 namespace lodestone::hierarchy {
 namespace {
 
-/// What a material shows on a mesh without texture coordinates: joined with one that has them, the
-/// mesh gets some too, but they mean nothing.
+/// A material as a mesh without texture coordinates shows it. Joined with a mesh that has them,
+/// such a mesh gets some, too, but they mean nothing.
 Material without_textures(Material material) {
     for_own_textures(material, [](Texture& texture) { texture = Texture{}; });
     if (material.other)
@@ -72,16 +72,28 @@ FlattenedGroup flatten_group(OpenedGroup& group, double error, const MeshSource&
 }
 
 double error_to_flatten(OpenedGroup& group, uint64_t wanted, uint64_t most, const Job& job) {
-    constexpr int kFinest = -12;  // powers of two, over the radius
+    // The errors that are tried are powers of two, over the radius.
+    // Taste: a larger one knows less of fine levels, for a search less.
+    constexpr int kFinest = -12;
+    // Taste: a larger one tries errors that are larger than any group is seen with.
     constexpr int kCoarsest = 3;
     // One mesh for a group has fewer triangles than its children at the same error, by this or
-    // more. (Kept ones: by 1.4 in the worst case of 105, by 4 in the middle.)
+    // more.
+    // Fitted: to 105 levels that were kept (by 1.4 in the worst case, by 4 in the middle); the
+    // script was not kept.
     constexpr double kJoined = 1.5;
-    constexpr double kFiner = 1.0 / 8;   // than the stand-ins
-    constexpr double kLeast = 1.0 / 16;  // over the radius: for what only solids can stand for
+    // The error of the reference over that of the first stand-in.
+    // Taste: a larger value flattens to fewer triangles, which errors are known less well by.
+    constexpr double kFiner = 1.0 / 8;
+    // The error of the reference, over the radius, of groups that only solids can stand for.
+    // Taste: as kFiner.
+    constexpr double kLeast = 1.0 / 16;
+    // Taste: a larger number flattens small groups finer than the reference asks.
     constexpr uint64_t kFewTriangles = 1000;
-    // What is larger than this part of the size is not fine: what is measured against it would look
-    // as far off. And what saves little is not worth an error: a roof of boxes stays one.
+    // Things that are larger than this power of two over the size are not fine: errors that are
+    // measured against them would look as large. And an error is no use where it saves little: a
+    // roof of boxes stays one.
+    // Taste: a larger one flattens to fewer triangles.
     constexpr int kLastFine = -5;
     const CostModel& costs = group.model().costs;
     const double size = group.model().objects[group.index()].bound().radius;

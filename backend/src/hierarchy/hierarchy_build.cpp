@@ -157,7 +157,9 @@ public:
     }
 
 private:
-    static constexpr double kBuildShare = 0.92;  // of the bar; the rest is writing
+    // The share of the progress bar that is building; writing has all else.
+    // Taste: a larger value lets the bar wait longer at its end.
+    static constexpr double kBuildShare = 0.92;
 
     static double weight(const Object& object) {
         return static_cast<double>(
@@ -233,8 +235,8 @@ private:
         kept_at_ = wall_seconds();
     }
 
-    /// What deforms: its levels are collapsed where that has not been done yet, and put where the
-    /// object has them now.
+    /// Treats objects that deform: their levels are collapsed where that has not been done yet, and
+    /// moved to the pose that the object has now.
     void follow(BuildReport& report) {
         std::map<Hash, segment::BoundLevels> levels;
         std::vector<const FollowingObject*> missing;
@@ -319,7 +321,7 @@ private:
         return count;
     }
 
-    /// What is another one moved, once that is built.
+    /// Finishes a group that is another one moved, once that is built.
     void finish(const MovedCopy& moved) {
         if (model_.objects[moved.original].build_hash != 0) {
             add_moved_copy(model_, moved, mesh_source());

@@ -23,7 +23,9 @@ namespace {
 /// from less error on, where they look no worse.
 void seal(std::vector<StandInCandidate>& levels, OpenedGroup& group, const MeasuredFinest& finest,
           FinestPictures& pictures, const MeshSource& source, const Job& job) {
-    constexpr double kFarthest = 4;  // over the radius: all children are as coarse as they get
+    // The error, over the radius, at which the coarsest level is tried.
+    // Taste: all children are as coarse as they get; a larger value changes nothing.
+    constexpr double kFarthest = 4;
     const CostModel& costs = group.model().costs;
     double next = kFarthest * group.model().objects[group.index()].bound().radius;
     for (size_t i = levels.size(); i-- > 0;) {
@@ -62,7 +64,8 @@ std::vector<StandInCandidate> cheapest_of(ProposalRound& round) {
 
 /// How many triangles a group is flattened to: a third of its own, as far as the settings allow.
 uint64_t triangles_to_flatten(const RepresentationSummary& finest, const BuildSettings& settings) {
-    constexpr uint64_t kFewest = 1000;  // taste
+    // Taste: a larger number flattens small groups finer, in time in proportion.
+    constexpr uint64_t kFewest = 1000;
     return std::min(settings.group_triangles,
                     std::max<uint64_t>(kFewest, finest.cost.triangles / 3));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OpenedGroup: what a group's children are drawn by within an error.
+// Opened group: the representations that draw a group's children within an error.
 #pragma once
 
 #include "choose/cut.h"
@@ -9,6 +9,7 @@
 namespace lodestone::hierarchy {
 
 /// How finely an ellipsoid is drawn by triangles: 80 of them.
+/// Taste: one more is four times the triangles.
 inline constexpr int kDrawnSubdivisions = 1;
 
 /// The costs of an occurrence of the group's children within an error.

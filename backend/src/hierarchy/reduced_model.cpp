@@ -15,7 +15,8 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// How much finer than its coarser neighbor the levels tried for an error are.
+// The triangles of a level that is tried for an error, over those of the next finer one.
+// Taste: a larger value comes nearer to the error, with more tries.
 constexpr double kStep = 0.7;
 
 struct ReducedMesh {
@@ -23,7 +24,8 @@ struct ReducedMesh {
     std::optional<measure::SurfaceDeviation> deviation;
 };
 
-/// What is transparent is neither missed nor matched; what it looks like does not count.
+/// The deviation of a level. Transparent surfaces are neither missed nor matched, and their looks
+/// do not count.
 measure::SurfaceDeviation deviation_of(const measure::DeviationReference& reference,
                                        const Mesh& level, const ray::SkinPtr& skin,
                                        const Job& job) {
@@ -56,7 +58,9 @@ simplify::SimplifyOptions options_of(const ReductionOptions& wanted) {
     return options;
 }
 
-// Below this part of its triangles a grid's even samples are more than a sixth worse than clusters.
+// Below this share of its triangles a grid's even samples are more than a sixth worse than
+// clusters.
+// Fitted: to levels of a terrain of 178,802 triangles; the script was not kept.
 constexpr double kLeastOfGrid = 0.08;
 
 /// The fastest way to a count: a regular grid is sub-sampled, everything else is clustered.

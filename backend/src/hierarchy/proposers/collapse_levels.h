@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Levels: what is collapsed to how many triangles.
+// Collapse levels: the numbers of triangles that meshes are collapsed to.
 #pragma once
 
 #include "hierarchy/build_settings.h"
@@ -9,7 +9,8 @@
 
 namespace lodestone::hierarchy {
 
-/// A mesh of fewer triangles is not worth it beside primitives. Taste.
+/// A mesh of fewer triangles is not worth it beside primitives.
+/// Taste: a larger number leaves coarse levels to solids.
 inline constexpr size_t kFewestTriangles = 8;
 
 /// Numbers of triangles that fall by `ratio` from `first` on, as long as a mesh is worth it beside

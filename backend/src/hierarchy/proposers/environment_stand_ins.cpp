@@ -15,8 +15,12 @@
 namespace lodestone::hierarchy {
 namespace {
 
-constexpr int kBesideSubdivisions = 1;  // an ellipsoid of 80 triangles; taste
-constexpr size_t kMostBeside = 8;       // solids; taste
+// How finely an ellipsoid beside environment is drawn: 80 triangles.
+// Taste: one more is four times the triangles.
+constexpr int kBesideSubdivisions = 1;
+// The most solids beside environment.
+// Taste: more come nearer and take longer to fit.
+constexpr size_t kMostBeside = 8;
 
 struct SolidsInEnvironment {
     Composite composite;

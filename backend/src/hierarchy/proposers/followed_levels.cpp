@@ -93,7 +93,9 @@ segment::BoundLevels bound_levels_of_leaf(const PoseBinding& bind, const BuildSe
 
 std::vector<StandInCandidate> followed_levels(const Model& model, const Object& object,
                                               const segment::BoundLevels& levels, const Job& job) {
-    // A coarser level may be the better one in some frame, but levels keep their numbers.
+    // The least factor between the errors of two levels. A coarser level may be the better one in
+    // some frame, but levels keep their numbers.
+    // Law: more than 1 by the least that rounding of doubles keeps, with a large margin.
     constexpr double kRise = 1 + 1e-9;
     std::vector<StandInCandidate> out;
     const Representation& finest = object.representations.at(0);

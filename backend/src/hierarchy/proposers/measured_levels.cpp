@@ -30,8 +30,9 @@ double nearest_of_use(const ProposalRound& round) {
 }  // namespace
 
 void propose_levels(ProposalRound& round) {
-    // A level is hardly ever more than so many times nearer than the next coarser one (of 836 pairs
-    // in groups: a tenth; of 275 that would have to be, one).
+    // A level is hardly ever more than so many times nearer than the next coarser one.
+    // Fitted: to levels of groups (a tenth of 836 pairs; one of 275 that would have to be); the
+    // script was not kept.
     constexpr double kMostNearer = 4;
     const ProposalLimits& limits = round.limits;
     const MeasuredFinest& finest = round.finest;
@@ -47,7 +48,8 @@ void propose_levels(ProposalRound& round) {
     double coarser = 0;
     for (size_t i = levels.size(); i-- > 0;) {
         Mesh& level = levels[i];
-        // What it saves is asked for half way to the next, on a scale of powers.
+        // The memory that the level saves is asked for half way to the next, on a logarithmic
+        // scale.
         const double useless = limits.useless ? limits.useless(level.triangles.size())
                                               : std::numeric_limits<double>::infinity();
         double most = limits.told;

@@ -14,12 +14,17 @@ namespace {
 
 using prune::Crowd;
 
-// Fewer parts than this are no crowd any more. Taste.
+// Fewer parts than this are no crowd any more.
+// Taste: a larger number ends pruning at finer levels.
 constexpr size_t kFewestParts = 8;
-// Parts of more triangles than this are simplified as well as thinned. Taste.
+// Parts of more triangles than this are simplified as well as thinned.
+// Taste: a larger number keeps fewer parts, each with all of its triangles.
 constexpr size_t kPlainPart = 12;
-constexpr double kMostGrowth = 64;  // of areas; taste: larger parts do not look like a crowd
-// Enlarged parts hide more of each other: growth is corrected by what is seen, so often. Taste.
+// The most by which the areas of parts grow.
+// Taste: parts that grow more do not look like a crowd.
+constexpr double kMostGrowth = 64;
+// Enlarged parts hide more of each other: growth is corrected by the area that is seen, so often.
+// Taste: more come nearer to the same area, for a measurement each.
 constexpr int kCorrections = 3;
 
 /// The parts and triangles that are kept at one level.
@@ -33,7 +38,7 @@ std::vector<PruningStep> steps_of(const Crowd& crowd, size_t rest, double ratio)
     const bool plain = crowd.triangles <= kPlainPart * crowd.parts.size();
     std::vector<PruningStep> out;
     for (double share = ratio;; share *= ratio) {
-        // Half the way each, on a scale of powers.
+        // Thinning and simplifying go half the way each, on a logarithmic scale.
         const double kept = plain ? share : std::sqrt(share);
         const auto of = [](double part, size_t whole) {
             return static_cast<size_t>(std::round(part * static_cast<double>(whole)));
@@ -171,7 +176,9 @@ private:
 
     /// Moves growth towards what shows as much as the whole crowd; true when it does already.
     bool correct(std::vector<double>& growth, const std::vector<double>& now) const {
-        constexpr double kSameArea = 0.02;  // taste: about what the rays know
+        // The relative difference of areas that counts as none.
+        // Taste: about as much as the rays know; a larger value shows more or less than the crowd.
+        constexpr double kSameArea = 0.02;
         bool right = true;
         for (size_t kind = 0; kind < growth.size(); ++kind) {
             if (!(now[kind + 1] > 0) || !(visible_[kind] > 0))

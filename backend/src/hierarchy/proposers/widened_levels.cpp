@@ -18,15 +18,29 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// A thing that is mostly thin shows less than this share of its bound's surface, ...
+// A thing that is mostly thin shows less than this share of its bound's surface.
+// Taste: a larger value tries more things, in vain.
 constexpr double kSparsest = 0.08;
-// ... and so much of it at least in thin parts, ...
+// It shows at least this share of its area in thin parts.
+// Taste: a larger value tries fewer things.
 constexpr double kMostlyThin = 0.25;
-constexpr size_t kMostThin = 16;  // ... of which each is a box in every level.
-constexpr double kWidest = 0.3;   // over the radius: wider ones are crossed by too many rays
-constexpr double kRatio = 1.6;    // of widths
-constexpr int kMostWidths = 8;    // of a level
-constexpr double kNext = 1.01;    // of errors, at least
+// The most thin parts; each is a box in every level.
+// Taste: a larger number makes levels of more boxes, which cost more.
+constexpr size_t kMostThin = 16;
+// The largest width of a box, over the radius.
+// Taste: wider ones are crossed by too many rays.
+constexpr double kWidest = 0.3;
+// The width of a box over that in the level before.
+// Taste: a larger value makes fewer levels.
+constexpr double kRatio = 1.6;
+// The most widths that one level is tried with.
+// Taste: a larger number makes more levels, for pictures each.
+constexpr int kMostWidths = 8;
+// The error of a level over that of the level before, at least.
+// Taste: a larger value leaves out levels that differ little.
+constexpr double kNext = 1.01;
+// The rays that measure a thin part.
+// Taste: more know its area and color better, in time in proportion.
 constexpr uint64_t kRaysOfPart = 4096;
 
 /// The thin parts of a mesh.
@@ -46,10 +60,12 @@ bool is_plain(const Mesh& mesh, size_t triangle, const std::vector<Material>& ma
            !material.other && !emits(material);
 }
 
-/// By part: whether it may be thin, which takes no rays to say.
+/// Tells by part whether it may be thin, which takes no rays.
 std::vector<uint8_t> perhaps_thin(const Mesh& mesh, const std::vector<uint32_t>& part_of,
                                   const std::vector<Material>& materials) {
-    // The area of what is twelve times longer than thick is a third of its diagonal's square.
+    // The most area of a thin part, over the square of its diagonal.
+    // Taste: a box that is twelve times longer than thick has a third; a larger value measures more
+    // parts in vain.
     constexpr double kMostArea = 0.5;
     struct PartBounds {
         glm::dvec3 low{std::numeric_limits<double>::infinity()};
@@ -146,7 +162,7 @@ Mesh rest_of(const Mesh& level, const ThinParts& thin, const MeasuredFinest& fin
     return subset(level, keep);
 }
 
-/// A level's other parts, and boxes so wide in slots of their own.
+/// A level whose thin parts are boxes of this width, in slots of their own, beside `others`.
 StandInCandidate widened_level(const StandInCandidate& level, const Mesh& others,
                                const ThinParts& thin, double width, double floor) {
     StandInCandidate out = level;
@@ -199,7 +215,7 @@ void propose_widened_levels(ProposalRound& round) {
         if (!fine)
             fine.emplace(mesh, finest.scene(), finest.skin, finest.options.seed,
                          measure::AgreementReference::kSide, job);
-        StandInCandidate exact;  // but for what is widened
+        StandInCandidate exact;  // but for the boxes
         exact.materials = materials;
         exact = widened_level(exact, beside, thin, width, floor);
         return fine->of(exact.mesh(), finest.skin_of(exact.materials), job).error;
@@ -237,7 +253,7 @@ void propose_widened_levels(ProposalRound& round) {
         if (any)
             most = out.back().mesh().triangles.size();
         else if (!wide)
-            out.push_back(level);  // else what is wide already serves instead
+            out.push_back(level);  // else a level that is wide already serves instead
         wide = wide || any;
     }
     kept = std::move(out);

@@ -12,12 +12,13 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// Triangles that a smooth thing of this size (radius) needs within an error: a facet of edge h is
-// h^2 / 8 r off, and a sphere has 29 r^2 / h^2 of them.
+// The triangles that a smooth thing needs, over its size (radius) / error.
+// Law: a facet of edge h is h^2 / 8 r off, and a sphere has 29 r^2 / h^2 of them.
 constexpr double kTrianglesPerSizeOverError = 3.6;
+// Law: the triangles of a box.
 constexpr uint64_t kLeastTriangles = 12;
 
-/// What of one stale thing the picture shows.
+/// How the picture shows one stale thing.
 struct PictureNeed {
     double error = -1;   // the least error any of its occurrences allows, metres; < 0: none shown
     uint64_t below = 0;  // groups: occurrences drawn for it

@@ -54,7 +54,7 @@ BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
                      const BuildSettings& settings) {
     const Hash of_settings = hash_of(settings, model.costs);
     std::vector<bool> inside = within(settings.scope, model, order);
-    // What is another group moved has the levels of that one, whichever of them is stale: so an
+    // A group that is another one moved has the levels of that one, whichever is stale: so an
     // early partial build comes to the same as a whole one.
     std::map<ObjectIndex, MovedCopy> moved;
     for (const MovedCopy& one : moved_groups(model, order, surroundings)) {

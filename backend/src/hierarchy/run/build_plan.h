@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Build plan: of everything a model draws, what its store has already, and what is to be built.
+// Build plan: which objects that a model draws are in its store already, and which are to be built.
 #pragma once
 
 #include "hierarchy/build_settings.h"
@@ -31,9 +31,9 @@ struct BuildPlan {
     std::vector<ObjectIndex> not_followed;  // deform, but none of the poses is theirs
 };
 
-/// Of the objects of `order` (children before parents), within the scope of the settings. Valid as
-/// long as the shelf and the models of poses. Throws Error(InvalidArgument) for a scope that names
-/// no object.
+/// Plans the objects of `order` (children before parents), within the scope of the settings. The
+/// plan is valid as long as the shelf and the models of poses. Throws Error(InvalidArgument) for a
+/// scope that names no object.
 BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
                      const StandInSurroundings& surroundings, const StoredStandIns& shelf,
                      const BuildSettings& settings);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Poses: what the objects of a model that deform look like in the frames that decide their levels.
+// Deforming poses: the shapes of a model's deforming objects in the frames that decide their
+// levels.
 #pragma once
 
 #include "base/hash.h"
@@ -12,7 +13,7 @@
 
 namespace lodestone::hierarchy {
 
-/// What one object's levels are collapsed from: its poses of the same connectivity.
+/// The source of one object's levels: its poses of the same connectivity.
 struct PoseBinding {
     Hash hash = 0;  // of all that the levels depend on
     const Model* model = nullptr;

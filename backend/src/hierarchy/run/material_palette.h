@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Palette: the materials of a model, each content once.
+// Material palette: the materials of a model, each content once.
 #pragma once
 
 #include "base/hash.h"
@@ -10,14 +10,14 @@
 
 namespace lodestone::hierarchy {
 
-/// Not safe from several threads.
+/// The list of a model's materials, found by content. Not safe from several threads.
 class MaterialPalette {
 public:
-    /// Of the materials that the model has already; it must outlive the palette.
+    /// A palette of the materials that the model has already; it must outlive the palette.
     explicit MaterialPalette(Model& model);
 
-    /// Its place in the model's list, where it is added when its content is new; the name of the
-    /// first stays.
+    /// The place of a material in the model's list, where it is added when its content is new; the
+    /// name of the first stays.
     uint32_t index_of(const Material& material);
 
 private:

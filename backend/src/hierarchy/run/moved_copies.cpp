@@ -12,13 +12,15 @@
 namespace lodestone::hierarchy {
 namespace {
 
-constexpr double kSamePlace = 1e-4;  // over the radius: far below what any pixel shows
+// The largest distance of parts that are at the same place, over the radius.
+// Taste: far below all that a pixel shows; a larger value takes groups for equal that differ.
+constexpr double kSamePlace = 1e-4;
 
 const std::vector<Placement>& placed_in(const Model& model, ObjectIndex group) {
     return model.objects[group].representations[0].assembly().placements;
 }
 
-/// Of all but where things are: groups with different ones are different.
+/// The hash of all but where things are: groups with different hashes are different.
 Hash kind_of(const Model& model, ObjectIndex group, const StandInSurroundings& around) {
     const Object& object = model.objects[group];
     Hasher hasher;
@@ -84,7 +86,10 @@ Payload moved_payload(const Representation& from, const Affine& place, const Mes
 
 std::vector<MovedCopy> moved_groups(const Model& model, const std::vector<ObjectIndex>& order,
                                     const StandInSurroundings& surroundings) {
-    constexpr size_t kMostKinds = 64;  // that place the same things each in its own way
+    // The most groups that place the same things, each in its own way, that others are compared
+    // with.
+    // Taste: a larger number finds more copies, in time in proportion.
+    constexpr size_t kMostKinds = 64;
     std::vector<MovedCopy> out;
     std::map<Hash, std::vector<ObjectIndex>> originals;
     for (const ObjectIndex group : order) {
