@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Why not libpng's text functions: they write text together with pixels, so that every picture is
-// decoded and encoded anew: 0.4 s instead of 0.2 ms for 1024 x 1024 pixels, and other bytes than the
-// renderer wrote (docs/EXPERIMENTS.md, "Formats").
+// decoded and encoded anew: 0.4 s instead of 0.2 ms for 1024 x 1024 pixels, and other bytes than
+// the renderer wrote (docs/EXPERIMENTS.md, "Formats").
 #include "image/png_text.h"
 
 #include "base/error.h"

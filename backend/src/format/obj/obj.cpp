@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Why not tinyobjloader (2.0 rc10, as Debian 12 has it): it refuses a whole file for one broken face
-// (39 % of damaged files), takes a broken vertex for 0 0 0 without a word, hands out indices of
-// vertices that are not there, knows no continued lines, and takes 1.8 times the CPU time of this
-// (docs/EXPERIMENTS.md, "Formats").
+// Why not tinyobjloader (2.0 rc10, as Debian 12 has it): it refuses a whole file for one broken
+// face (39 % of damaged files), takes a broken vertex for 0 0 0 without a word, hands out indices
+// of vertices that are not there, knows no continued lines, and takes 1.8 times the CPU time of
+// this (docs/EXPERIMENTS.md, "Formats").
 #include "format/obj/obj.h"
 
 #include "base/files.h"
