@@ -69,7 +69,8 @@ QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* m
         fail(Status::InvalidArgument, "modifiers.off_screen is ", given.off_screen,
              "; 0 to 2 expected");
     out.off_screen = static_cast<OffScreen>(given.off_screen);
-    constexpr uint32_t kAllClasses = kIndirectRays >> 1u;  // the camera's bit comes first
+    // Law: lds_rays numbers the classes without the camera's bit, which comes first.
+    constexpr uint32_t kAllClasses = kIndirectRays >> 1u;
     if ((given.ray_classes & ~kAllClasses) != 0)
         fail(Status::InvalidArgument, "modifiers.ray_classes is ", given.ray_classes, "; 0 to ",
              kAllClasses, " expected");

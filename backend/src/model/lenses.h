@@ -13,10 +13,10 @@ namespace lodestone {
 
 enum class LensShape : uint8_t { Sphere = 0, Box = 1 };
 
-/// What a lens does to what is not in its list of objects.
+/// The effect of a lens on objects that are not in its list.
 enum class LensFilter : uint8_t {
     All = 0,     // there is no list: everything is refined
-    Refine = 1,  // only what is listed is refined, and all that is below it
+    Refine = 1,  // only the listed objects are refined, and all below them
     Show = 2,    // and nothing else is drawn whose bound has its center inside
 };
 
@@ -31,7 +31,7 @@ struct DetailLens {
     double strength = 2;  // more than 0
     double falloff = 1;   // 0: the same everywhere inside
     LensFilter filter = LensFilter::All;
-    std::vector<ObjectIndex> objects;  // what a filter is about
+    std::vector<ObjectIndex> objects;  // the list of the filter
 };
 
 /// A disc on the image.
@@ -43,12 +43,12 @@ struct ScreenLens {
     double falloff = 1;
 };
 
-/// What a level is judged by (5.2.2), and so the unit of the view's threshold.
+/// The measure by which a level is good enough (5.2.2), and so the unit of the view's threshold.
 enum class DetailCriterion : uint8_t {
-    Resolution = 0,  // pixels that its error covers
-    Feature = 1,     // share of the picture that its largest missing feature covers
-    Area = 2,        // share of the picture up to which the coarsest level is used; each finer one
-                     // serves four times as much
+    Resolution = 0,  // the pixels that its error covers
+    Feature = 1,     // the share of the picture that its largest missing feature covers
+    Area = 2,  // the share of the picture up to which the coarsest level is used; each finer one
+               // serves four times as much
     Distance =
         3,  // metres up to which the original is used; each coarser level serves twice as far
 };

@@ -10,7 +10,7 @@
 
 namespace lodestone {
 
-/// What alpha below 1 does.
+/// The meaning of an alpha below 1.
 enum class AlphaMode : uint8_t {
     Opaque = 0,  // nothing
     Blend = 1,   // the surface covers that share of what is behind it
@@ -55,7 +55,9 @@ struct Material {
     Texture mix_texture;
 };
 
-inline constexpr int kMostMixtures = 64;  // deeper ones are a mistake or an attack
+/// The most materials that are mixed one in another.
+/// Taste: deeper ones are a mistake or an attack; a larger number needs more stack.
+inline constexpr int kMostMixtures = 64;
 
 /// The numbers that a field of a material may have.
 struct NumberRange {
@@ -63,7 +65,9 @@ struct NumberRange {
     double high = 1;
 };
 inline constexpr NumberRange kAnyNumber{-kInfinity, kInfinity};
+/// Taste: nearly all doubles; a larger value lets products of such numbers overflow sooner.
 inline constexpr NumberRange kFiniteNumber{-1e300, 1e300};
+/// Taste: as kFiniteNumber.
 inline constexpr NumberRange kPositiveNumber{0, 1e300};
 inline constexpr NumberRange kShare{};
 
@@ -140,7 +144,7 @@ constexpr void for_each_field_of(Visit&& visit) {
 /// Brings its own numbers, which are finite, into their ranges.
 void clamp_numbers(Material& material);
 
-/// Of everything but the names.
+/// The hash of everything but the names.
 Hash hash_of(const Material& material);
 
 /// Whether anything of it (or of what it is mixed with) is looked up by texture coordinates.

@@ -8,6 +8,7 @@
 namespace lodestone {
 namespace {
 
+// Law: white multiplies by 1.
 constexpr glm::vec4 kWhite(1);
 
 /// Drops vertices nothing uses, keeping order.
@@ -94,6 +95,7 @@ Hash hash_of(const Mesh& mesh) {
 
 void check(const Mesh& mesh) {
     const size_t vertices = mesh.positions.size();
+    // Law: indices have 32 bits, and this leaves room for sums of two.
     constexpr size_t kMost = size_t{1} << 31u;
     if (vertices > kMost || mesh.triangles.size() > kMost)
         fail(Status::InvalidArgument, "a mesh of ", vertices, " vertices and ",

@@ -7,7 +7,8 @@
 namespace lodestone {
 namespace {
 
-// Deeper nesting is a mistake of some program; it would exhaust the stacks of tile viewers.
+// Deeper nesting is a mistake of some program.
+// Taste: a larger number would exhaust the stacks of tile viewers.
 constexpr size_t kDeepest = 1000;
 
 enum class VisitMark : uint8_t { New, Open, Done };

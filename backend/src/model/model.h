@@ -36,7 +36,7 @@ std::vector<uint8_t> with_deforming(const Model& model);
 /// stand-in for all of it would be seen by rays that must not see a part. Such a group has none.
 std::vector<uint8_t> with_hidden(const Model& model);
 
-/// Sets what every object's demand is from what is decided about the placements below it.
+/// Sets every object's demand from the decisions about the placements below it.
 void set_demands(Model& model, const std::vector<ObjectIndex>& order);
 
 /// Fills summaries of every assembly (bound, cost, hash), demands and source hashes from its
@@ -51,8 +51,8 @@ void summarize(Representation& representation, const Model& model,
 /// Gives the model another renderer's costs, and prices every resident representation by them.
 void set_costs(Model& model, const CostModel& costs);
 
-/// Number of leaf occurrences below the root (each path of placements counts), and what they place.
-/// Sums that would be more than 64 bits hold are the largest number.
+/// The number of leaf occurrences below the root (each path of placements counts), and the sums of
+/// all that they place. Sums that would be more than 64 bits hold are the largest number.
 /// An object made of parts (Object::made_of_parts) is one object and one leaf.
 struct ModelTotals {
     uint64_t objects = 0;  // with representations, groups included
@@ -71,7 +71,8 @@ struct Occurrence {
 };
 /// Whether an object made of parts is visited itself, or its parts.
 enum class OccurrenceUnit { Objects, Parts };
-/// More are refused: a few groups that place each other twice would take forever.
+/// The most occurrences of a model; more are refused.
+/// Taste: a larger number waits longer for a few groups that place each other twice.
 inline constexpr uint64_t kMostOccurrences = uint64_t{1} << 28u;
 /// Throws Error(InvalidArgument) for cycles, and when there are more than kMostOccurrences.
 void for_each_occurrence(const Model& model, const std::function<void(const Occurrence&)>& visit,

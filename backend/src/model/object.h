@@ -29,11 +29,10 @@ struct Object {
     // One mesh of the user's whose loose parts were put into clusters: a group that counts as one
     // object and as one occurrence, whatever of it is drawn how finely.
     bool made_of_parts = false;
-    std::shared_ptr<const PosedSurface>
-        pose;  // of something that deforms: what levels follow; may be null
-    /// Of all that is below it, how important what is most important there is beside the object
-    /// itself; infinite where something must not be drawn coarser than some level. See
-    /// set_demands.
+    /// The surface that the levels of a deforming object follow; may be null.
+    std::shared_ptr<const PosedSurface> pose;
+    /// The importance of the most important thing below it, over that of the object itself;
+    /// infinite where something must not be drawn coarser than some level. See set_demands.
     double demand = 1;
     Hash source_hash = 0;  // of the finest representation and of all below it
     Hash build_hash = 0;   // of the source and settings its stand-ins were made from; 0 = none

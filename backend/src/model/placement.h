@@ -11,18 +11,23 @@
 
 namespace lodestone {
 
-/// Index into Model::objects.
+/// An index into Model::objects.
 using ObjectIndex = uint32_t;
 inline constexpr ObjectIndex kNoObject = ~ObjectIndex{0};
 
 /// Bits of the ray classes (docs/architecture.md, Words). The camera's counts behind glass, too.
 using RayMask = uint8_t;
+/// Law: a bit of its own each, as lds_ray_class of the C interface and our files have them.
 inline constexpr RayMask kCameraRays = 1;
+/// Law: as kCameraRays.
 inline constexpr RayMask kReflectionRays = 2;
+/// Law: as kCameraRays.
 inline constexpr RayMask kShadowRays = 4;
+/// Law: as kCameraRays.
 inline constexpr RayMask kRadiosityRays = 8;
 /// All of them, rising.
 inline constexpr std::array kRayClasses{kCameraRays, kReflectionRays, kShadowRays, kRadiosityRays};
+/// Law: the bits up to that of the last class.
 inline constexpr RayMask kAllRays = 2 * kRayClasses.back() - 1;
 /// Those that may meet other representations than the camera's rays do. The C interface numbers
 /// them without the camera's bit.
@@ -31,6 +36,7 @@ inline constexpr RayMask kIndirectRays = kAllRays & ~kCameraRays;
 /// No limit on how coarse something is drawn.
 inline constexpr uint32_t kAnyLevel = ~uint32_t{0};
 /// Importances are kept within 1 / kMostImportance ... kMostImportance.
+/// Taste: a larger value lets one thing take nearly all of a budget.
 inline constexpr double kMostImportance = 64;
 
 struct Placement {

@@ -16,7 +16,7 @@ struct RepresentationSummary {
     Bound bound;           // object's frame
     DrawCost cost;
     Hash hash = 0;  // of the payload and its materials: equal hashes draw the same
-    /// Of a group's stand-in: its children do not look like the group together where this is used,
+    /// For a group's stand-in: the children together do not look like the group where this is used,
     /// so that it is not opened for them where they cost less.
     bool sealed = false;
 };

@@ -32,11 +32,11 @@ struct KindRow {
     Kind kind;
     const char* word;  // in files and reports
     bool drawn;        // false: it is drawn by what it places
-    /// POV-Ray keeps a mesh once for all its occurrences, but copies the solids of a union for each,
-    /// and forgets in clipped unions which rays see them.
+    /// POV-Ray keeps a mesh once for all its occurrences, but copies the solids of a union for
+    /// each, and forgets in clipped unions which rays see them.
     bool copied;
     /// Viewers draw meshes: ellipsoids as 20 * 4^subdivisions triangles, so many triangles in all.
-    /// Of a composite it is a guess from above, 32 ellipsoids; none: as many as its summary says.
+    /// For a composite it is a guess from above, 32 ellipsoids; none: as many as its summary says.
     /// Taste: more subdivisions are rounder and four times the triangles each.
     int viewer_subdivisions;
     std::optional<uint64_t> viewer_triangles;
@@ -44,6 +44,7 @@ struct KindRow {
     std::optional<std::array<double, 3>> false_color;
 };
 
+/// Law: the words and numbers are those of files, a box has 12 triangles, an icosahedron 20.
 inline constexpr std::array kKindRows{
     KindRow{Kind::Mesh, "mesh", true, false, 0, {}, {}},
     KindRow{Kind::Box, "box", true, false, 0, 12, {{0.93, 0.45, 0.13}}},
@@ -51,7 +52,7 @@ inline constexpr std::array kKindRows{
     KindRow{Kind::Composite, "composite", true, true, 0, 32 * 20, {{0.55, 0.34, 0.76}}},
     KindRow{Kind::Assembly, "assembly", false, false, 0, 0, {}},
 };
-/// One more than the largest number of a kind.
+/// Law: one more than the largest number of a kind.
 inline constexpr size_t kKindLimit = static_cast<size_t>(kKindRows.back().kind) + 1;
 
 /// Throws Error(Internal) for a number that is no kind.
@@ -133,13 +134,14 @@ struct Overloaded : Functions... {
 template <typename... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
-/// What drawing it once costs a consumer that shares it between occurrences.
+/// The cost of drawing it once, for a consumer that shares it between occurrences.
 struct DrawCost {
-    uint64_t triangles = 0;  // of the mesh; an assembly: of all it places; a primitive: 0
-    uint64_t bytes = 0;      // in the renderer's memory, for one distinct representation
+    uint64_t triangles = 0;  // those of the mesh; an assembly: of all it places; a primitive: 0
+    uint64_t bytes = 0;      // the renderer's memory for one distinct representation
 };
 
-// What follows is for what is drawn: each throws Error(Internal) for an assembly.
+// The functions that follow are for kinds that are drawn: each throws Error(Internal) for an
+// assembly.
 
 Bound bound_of(Kind kind, const Payload& payload);
 DrawCost cost_of(Kind kind, const Payload& payload, const CostModel& costs);

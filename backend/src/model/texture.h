@@ -21,7 +21,7 @@ enum class TextureChannel : uint8_t {
     Luma = 5
 };
 
-/// What lies outside 0...1.
+/// The texels outside of the picture, where its coordinates are not within 0...1.
 enum class TextureExtension : uint8_t {
     Repeat = 0,
     Extend = 1,  // the border's texels
@@ -46,7 +46,7 @@ struct Texture {
     explicit operator bool() const { return picture != nullptr; }
 };
 
-/// Mesh coordinates to picture coordinates.
+/// Converts mesh coordinates to picture coordinates.
 glm::dvec2 to_picture(const Texture& texture, glm::dvec2 uv);
 
 Hash hash_of(const Texture& texture);

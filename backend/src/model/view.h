@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a picture is taken with: camera, lights, world, and the quality asked for.
+// Views and all that a picture is taken with: camera, lights, world, and the quality asked for.
 #pragma once
 
 #include "base/maths.h"
@@ -57,7 +57,7 @@ struct Light {
 struct World {
     glm::dvec3 color{0.05};    // linear radiance, the same from everywhere
     bool transparent = false;  // film: the background has alpha 0
-    /// What is seen all around instead of `color`: equirectangular, +Z up.
+    /// The picture that is seen all around instead of `color`: equirectangular, +Z up.
     PicturePtr environment;
     glm::dmat3 environment_turn{1.0};  // directions in the world -> in the picture
     glm::dvec3 environment_strength{1.0};
@@ -78,7 +78,8 @@ enum class OffScreen : uint8_t {
     Shadows = 2,    // as far as it shows their shadows: images of them may be coarse
 };
 
-/// What bends quality. Every factor counts by itself; all together stay within 1/64 ... 64.
+/// The factors that make things finer or coarser. Every factor counts by itself; all together stay
+/// within 1/64 ... 64.
 struct QualityModifiers {
     DetailCriterion criterion = DetailCriterion::Resolution;
     std::vector<DetailLens> lenses;
@@ -97,7 +98,7 @@ struct QualityModifiers {
     RayMask ray_classes = 0;
 };
 
-/// Everything but the model.
+/// All that a cut is chosen for, besides the model.
 struct View {
     Camera camera;
     int width = 640;  // pixels of the final image

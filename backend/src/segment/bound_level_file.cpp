@@ -8,6 +8,7 @@ namespace lodestone::segment {
 namespace {
 
 // The number changes with the layout; a machine of the other byte order reads another one.
+// Law: "LdBound3" in ASCII, little-endian.
 constexpr uint64_t kMagic = 0x33646e756f42644cu;
 
 using deform::BoundLevel;

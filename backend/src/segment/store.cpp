@@ -17,10 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Taste: a larger number reads larger scenes, and lets a hostile file fill more memory.
 constexpr uint64_t kMostTilesetBytes = uint64_t{1} << 30u;
-constexpr size_t kStem = 16;  // characters of a file's name before its ending
+// The characters of a file's name before its ending.
+// Law: a hash of 64 bits in hexadecimal digits.
+constexpr size_t kStem = 16;
 
-/// What a stranger sees of a representation.
+/// The triangles that viewers of tiles draw for a representation.
 Mesh drawable(const Representation& representation) {
     return tessellated(representation);
 }
@@ -32,7 +35,7 @@ void make_folder(const fs::path& folder) {
         fail(Status::Io, "cannot make the folder '", folder.string(), "': ", error.message());
 }
 
-/// A file's name as this store and write_file() give it; what else lies there is the user's.
+/// Whether a file has a name as this store and write_file() give it; other files are the user's.
 bool ours(const fs::path& name) {
     static const std::set<std::string> kEndings{".glb", ".bound", ".png", ".jpg", ".exr"};
     const std::string stem = name.stem().string();
@@ -43,7 +46,7 @@ bool ours(const fs::path& name) {
            stem.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// All runs of 16 lower-case hexadecimal digits in a text: what its files are called is among them.
+/// All runs of 16 lower-case hexadecimal digits in a text: the names of its files are among them.
 std::set<std::string> stems_in(const std::string& text) {
     std::set<std::string> stems;
     size_t run = 0;
@@ -60,7 +63,7 @@ std::set<std::string> stems_in(const std::string& text) {
     return stems;
 }
 
-/// Of r/, b/ and i/; `wanted` are relative names.
+/// The files of r/, b/ and i/ that are ours and not wanted; `wanted` are relative names.
 std::vector<fs::path> unused_files(const fs::path& folder, const std::set<std::string>& wanted) {
     std::vector<fs::path> out;
     for (const char* part : {"r", "b", "i"}) {

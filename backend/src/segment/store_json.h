@@ -9,15 +9,17 @@
 
 namespace lodestone::segment {
 
+/// The number of the description's format.
+/// Law: raised with every change that earlier readers would misread.
 inline constexpr int kStoreFormat = 2;
 
-/// "r/<16 hex>.glb"
+/// The name of a mesh's file: "r/<16 hex>.glb".
 std::string file_of(Hash hash);
-/// "b/<16 hex>.bound"
+/// The name of the file of bound levels: "b/<16 hex>.bound".
 std::string bound_file_of(Hash bind_hash);
-/// "i/<16 hex>.png", ".jpg" or ".exr"
+/// The name of a picture's file: "i/<16 hex>.png", ".jpg" or ".exr".
 std::string file_of(const Picture& picture);
-/// Of every representation, bound levels and pictures of a model.
+/// The names of the files of every representation, bound levels and pictures of a model.
 std::set<std::string> files_of(const Model& model);
 
 /// Our own description, the value of asset.extras.lodestone. Doubles keep their bits.

@@ -90,7 +90,8 @@ Primitive primitive(const Json& json, Kind kind) {
 }
 
 std::shared_ptr<const Composite> composite(const Json& json, size_t slots) {
-    constexpr size_t kMostSolids = 1024;  // more are no file of ours
+    // Taste: more are no file of ours; a larger number lets a hostile file fill more memory.
+    constexpr size_t kMostSolids = 1024;
     if (!json.is_array() || json.empty() || json.size() > kMostSolids)
         fail(Status::BadFile, "a composite has ", json.size(), " solids");
     auto out = std::make_shared<Composite>();

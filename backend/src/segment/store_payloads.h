@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Store payloads: what each kind of representation draws, as the store says it. Meshes lie in files
-// of their own.
+// Store payloads: the solids and placements of representations in the words of the store. Meshes
+// lie in files of their own.
 #pragma once
 
 #include "model/representation.h"
@@ -8,7 +8,7 @@
 
 namespace lodestone::segment {
 
-/// How many there are of what a payload names.
+/// The numbers of the objects and slots that a payload may name.
 struct PayloadLimits {
     size_t objects = 0;
     size_t slots = 0;

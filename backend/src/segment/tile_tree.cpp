@@ -41,10 +41,12 @@ void put_transform(std::string& text, const Affine& transform) {
     }
 }
 
-/// Of more (some 300 bytes each) strangers get the stand-ins of the whole alone.
+/// The most tiles (some 300 bytes each); of larger models other viewers get the stand-ins of the
+/// whole alone.
+/// Taste: a larger number writes larger files, which such viewers read as a whole.
 constexpr uint64_t kMostTiles = uint64_t{1} << 20u;
 
-/// What all placements of one object share: its chain of tiles, worked out once.
+/// The chain of tiles of one object, worked out once and shared by all of its placements.
 struct TileChain {
     std::vector<double> geometric_errors;  // by LOD number
     Bound bound;                           // of every level and of all below
