@@ -86,6 +86,13 @@ class TheCheck(unittest.TestCase):
         self.assert_wrong("backend/src/base/a.h", "#include <nlohmann/json.hpp>", "may not see")
         self.assert_wrong("backend/include/lodestone/lodestone.h", "#include <glm/vec3.hpp>", "")
 
+    def test_a_header_that_shows_a_library_stays_in_its_folder(self):
+        self.assert_right("backend/src/segment/json_values.h", "#include <nlohmann/json.hpp>")
+        self.assert_right("backend/src/segment/a.cpp", '#include "segment/json_values.h"')
+        self.assert_wrong(
+            "backend/src/hierarchy/a.cpp", '#include "segment/json_values.h"', "its own folder"
+        )
+
     def test_imports_may_point_down(self):
         self.assert_right("blender_addon/lodestone/panel.py", "import bpy\nfrom .core import x\n")
         self.assert_right("blender_addon/lodestone/bridge/mesh.py", "from ..core.cut import Cut\n")
