@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lenses and all else that bends quality away from one Pixel Error everywhere (5.5.5).
+// Lenses, of the world and of the screen, and the criterion by which detail is judged (5.5.5).
 #pragma once
 
 #include "base/maths.h"
