@@ -14,6 +14,7 @@ def reason(**values):
     usual = {"lod": 2, "z": 41.0, "pixel": 0.012, "error": 0.011, "stretch": 1.0}
     usual |= {"error_px": 0.9, "factor": 1.0, "importance": 1.0, "demand": 1.0, "lenses": 1.0}
     usual |= {"screen_lenses": 1.0, "depth": 1.0, "motion": 1.0, "darkness": 1.0}
+    usual |= {"off_screen": 1.0}
     usual |= {"coarser_object": Object(7, 1), "coarser_lod": 3, "coarser_kind": Kind.BOX}
     usual |= {"coarser_error": 0.2, "coarser_error_px": 19.0, "coarser_factor": 1.0, "pinned": 0}
     return SimpleNamespace(**(usual | values))
@@ -57,6 +58,10 @@ class Why(unittest.TestCase):
         self.assertIn("= 0.5 px × 1.5 = 0.75 px ≤ 1 px", lines[0])
         self.assertIn("Importance × 3 finer", lines)
         self.assertIn("Motion × 2 coarser", lines)
+
+    def test_a_thing_behind_the_camera_was_coarser_for_no_reason_that_was_named(self):
+        lines = explain(factor=0.25, off_screen=4.0, error_px=3.0).lines
+        self.assertIn("Not seen directly × 4 coarser", lines)
 
     def test_what_cannot_be_finer_says_so(self):
         self.assertIn("> 1 px: nothing finer can be drawn", explain(error_px=3.0).lines[0])

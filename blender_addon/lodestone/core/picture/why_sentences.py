@@ -15,7 +15,12 @@ _FINER = (
     ("lenses", "Detail lenses"),
     ("screen_lenses", "Screen lenses"),
 )
-_COARSER = (("depth", "Depth exaggeration"), ("motion", "Motion"), ("darkness", "Darkness"))
+_COARSER = (
+    ("depth", "Depth exaggeration"),
+    ("motion", "Motion"),
+    ("darkness", "Darkness"),
+    ("off_screen", "Not seen directly"),
+)
 _TIMES, _AT_MOST, _MORE = "\N{MULTIPLICATION SIGN}", "\N{LESS-THAN OR EQUAL TO}", ">"
 _DOT = "\N{MIDDLE DOT}"
 
