@@ -3,7 +3,7 @@
 
 namespace lodestone::hierarchy {
 
-Hash hash_of(const BuildSettings& settings, const CostModel& costs) {
+Hash hash_of(const BuildSettings& settings) {
     // Law: the version of the algorithms, raised whenever the same settings give other stand-ins.
     constexpr uint32_t kAlgorithms = 27;
     return Hasher()
@@ -13,6 +13,12 @@ Hash hash_of(const BuildSettings& settings, const CostModel& costs) {
         .value(settings.samples)
         .value(settings.group_triangles)
         .value(settings.seed)
+        .result();
+}
+
+Hash hash_of(const BuildSettings& settings, const CostModel& costs) {
+    return Hasher()
+        .value(hash_of(settings))
         .value(costs.triangle_bytes)
         .value(costs.primitive_bytes)
         .value(costs.occurrence_bytes)

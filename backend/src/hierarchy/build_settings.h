@@ -52,8 +52,10 @@ struct BuildSettings {
     double keep_every_s = 20;
 };
 
-/// The hash of everything that changes a result, what drawing costs included, and of the version of
-/// the algorithms.
+/// The hash of every setting that changes a result, and of the version of the algorithms. Levels of
+/// what deforms depend on nothing else: their random numbers begin with it.
+Hash hash_of(const BuildSettings& settings);
+/// The same with what drawing costs, which decides what other stand-ins are kept.
 Hash hash_of(const BuildSettings& settings, const CostModel& costs);
 
 }  // namespace lodestone::hierarchy

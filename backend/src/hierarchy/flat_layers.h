@@ -2,6 +2,7 @@
 // Layers: which flat things lie on others, or under them: lines on roads, rugs on floors.
 #pragma once
 
+#include "base/job.h"
 #include "hierarchy/mesh_source.h"
 
 namespace lodestone::hierarchy {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/light_tree.h"
 
+#include "base/color.h"
 #include "light/light_arrival.h"
 
 #include <glm/common.hpp>

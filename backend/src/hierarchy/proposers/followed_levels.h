@@ -2,9 +2,11 @@
 // Levels of what deforms: collapsed once, put where the surface is in each frame.
 #pragma once
 
+#include "hierarchy/build_settings.h"
 #include "hierarchy/candidate.h"
 #include "hierarchy/mesh_source.h"
 #include "hierarchy/run/deforming_poses.h"
+#include "image/decoded_texels.h"
 #include "segment/bound_level_file.h"
 
 namespace lodestone::hierarchy {

@@ -92,7 +92,7 @@ BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
         if (deforming[index] != 0) {
             if (!object.deforms || object.group() || poses.empty())
                 continue;
-            bind = poses.of(object, of_settings);
+            bind = poses.of(object, hash_of(settings));
             if (!bind) {
                 plan.not_followed.push_back(index);
                 continue;
