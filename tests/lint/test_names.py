@@ -39,6 +39,10 @@ class TheCheck(unittest.TestCase):
         twice = "struct A {\n    struct Part {};\n};\nstruct B {\n    struct Part {};\n};\n"
         self.assertEqual(defined_twice(definitions({"a.h": twice})), {"Part": ["a.h", "a.h"]})
 
+    def test_a_nested_type_that_is_defined_outside_its_class_is_found(self):
+        found = definitions({"a.cpp": "struct Mesh::Corner {\n    int x;\n};\n"})
+        self.assertEqual(sorted(found), ["Corner"])
+
     def test_words_are_counted_as_read(self):
         for bare in ("Part", "Box3", "RGBA", "Glb"):
             self.assertTrue(is_bare(bare), bare)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 DEFINITION = re.compile(
     r"^[ \t]*(?:template\s*<[^>]*>\s*)?(?:struct|class|enum class|enum|union)\s+"
-    r"(?:alignas\([^)]*\)\s*)?([A-Z]\w*)\s*(?:final\s*)?(?::[^:;{][^;{]*)?\{",
+    r"(?:alignas\([^)]*\)\s*)?(?:\w+::)*([A-Z]\w*)\s*(?:final\s*)?(?::[^:;{][^;{]*)?\{",
     re.MULTILINE,
 )
 WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z][a-z0-9]*")
