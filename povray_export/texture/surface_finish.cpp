@@ -25,7 +25,7 @@ void append_named(std::string& out, const char* name, double value) {
     append_number(out, value, kDigits);
 }
 
-/// A row that tests/bench/fit_finish.py found for one roughness, against Cycles of Blender 3.4:
+/// A row that tests/bench/peers/fit_finish.py found for one roughness, against Cycles of Blender 3.4:
 /// specular 0.5 and clear coat 1, times what they are. Exponents are of Blinn's half vector
 /// (`specular`), the coat's of Phong's mirror direction. A metal is a highlight and a diffuse term,
 /// both tinted: without the latter rough ones are 20/255 off, with it 8/255. `sky` and `metal_sky`
@@ -44,7 +44,7 @@ struct FinishRow {
 };
 
 /// The finishes by roughness, rising.
-/// Fitted: by tests/bench/fit_finish.py, on balls rendered by Cycles of Blender 3.4.
+/// Fitted: by tests/bench/peers/fit_finish.py, on balls rendered by Cycles of Blender 3.4.
 const FinishRow kRows[] = {
     {0.00, std::log(16440), 0.0350, 0.0488, 3.0, 0.0004, std::log(16440), 0.150, 1.000},
     {0.05, std::log(8000), 0.0300, 0.0465, 3.0, 0.0008, std::log(7483), 0.176, 1.000},
@@ -70,7 +70,7 @@ struct CoatRow {
 };
 
 /// The clear coats by roughness, rising.
-/// Fitted: by tests/bench/fit_finish.py, on balls rendered by Cycles of Blender 3.4.
+/// Fitted: by tests/bench/peers/fit_finish.py, on balls rendered by Cycles of Blender 3.4.
 const CoatRow kCoatRows[] = {
     {0.00, std::log(2620), 0.0079, 0.0117}, {0.03, std::log(917), 0.0079, 0.0113},
     {0.10, std::log(51.2), 0.0072, 0.0113}, {0.20, std::log(13.8), 0.0075, 0.0112},

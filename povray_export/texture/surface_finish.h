@@ -31,7 +31,7 @@ using SurfaceLook = Material;
 /// The look of a material, whatever its numbers are.
 SurfaceLook look_of(const Material& material);
 
-/// The finish of a look, found by fitting: tests/bench/fit_finish.py. Smooth surfaces mirror their
+/// The finish of a look, found by fitting: tests/bench/peers/fit_finish.py. Smooth surfaces mirror their
 /// surroundings (traced); rough ones answer the sky with `ambient`, which does not have the white
 /// part: that is white_sky().
 Finish finish_of(const SurfaceLook& look);

@@ -24,7 +24,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-import same_bits
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from bench import same_bits  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 DATA = Path(os.environ.get("LODESTONE_DATA") or ROOT.parent / "shared" / "data")

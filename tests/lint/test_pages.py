@@ -72,7 +72,7 @@ class TheCheckOfFigures(unittest.TestCase):
 
 class TheCheckOfLinksAndNames(unittest.TestCase):
     KNOWN = pages.with_folders(
-        ["a/README.md", "a/b.png", "backend/src/choose/cut.cpp", "tests/bench/bench_cut.cpp"]
+        ["a/README.md", "a/b.png", "backend/src/choose/cut.cpp", "tests/bench/speed/bench_cut.cpp"]
         + ["blender_addon/lodestone/core/store/store_path.py"]
     )
 
@@ -92,7 +92,7 @@ class TheCheckOfLinksAndNames(unittest.TestCase):
         for text in (
             "`choose/cut`, `choose`, `bench_cut.cpp` and `choose/cut.cpp`",
             "`core/store/`, `core/store/store_path.py` and `store_path.py`",
-            "    build/release/x tests/bench/bench_cut.cpp --rounds 5",
+            "    build/release/x tests/bench/speed/bench_cut.cpp --rounds 5",
             "`backend/src/choose/cut` in `backend/src/choose/`",
             "`tests/backend/ROOM/test_FILE.cpp`, `tests/bench/bench_...`, $X/tests/mine.py",
             "`scene.pov`, `choose.total()`, cut_gone.cpp without quotes",

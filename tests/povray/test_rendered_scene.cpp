@@ -89,7 +89,7 @@ TEST(PovrayRender, AUniformSkyShowsWhatAPathTracerShows) {
         GTEST_SKIP() << "no POV-Ray";
     struct Case {
         double metallic, roughness;
-        glm::dvec3 shown;  // under a sky of 1, by tests/bench/fit_finish.py's Cycles
+        glm::dvec3 shown;  // under a sky of 1, by tests/bench/peers/fit_finish.py's Cycles
     };
     const Case cases[] = {{0, 0.05, {1.019, .530, .285}},
                           {0, 1.0, {1.051, .532, .272}},

@@ -9,10 +9,10 @@ import unittest
 from pathlib import Path
 from unittest import mock
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import bench_export as bench  # noqa: E402
-import benching  # noqa: E402
+from bench.peers import bench_export as bench  # noqa: E402
+from bench import benching  # noqa: E402
 
 
 def round_of(bundled, ours, triangles=500_000):

@@ -5,9 +5,9 @@ import sys
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import bench_first_picture as bench  # noqa: E402
+from bench.speed import bench_first_picture as bench  # noqa: E402
 
 
 def round_of(full, first):

@@ -12,10 +12,10 @@ try:
 except ImportError:
     raise unittest.SkipTest("numpy is not installed") from None
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import bench_rays as bench  # noqa: E402
-import ray_scenes  # noqa: E402
+from bench.speed import bench_rays as bench  # noqa: E402
+from bench.scenes import ray_scenes  # noqa: E402
 
 # Along Y from the origin; its frame is 2 by 1 at distance 1, 40 x 20 pixels
 CAMERA = SimpleNamespace(

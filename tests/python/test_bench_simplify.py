@@ -11,9 +11,9 @@ import unittest
 from pathlib import Path
 from unittest import mock
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import bench_simplify as bench  # noqa: E402
+from bench.peers import bench_simplify as bench  # noqa: E402
 
 
 def result(mean, cpus, got=100, want=100, **more):

@@ -7,9 +7,9 @@ import sys
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import bench_street as bench  # noqa: E402
+from bench.speed import bench_street as bench  # noqa: E402
 
 
 def picture(out, parse, peak, trace):

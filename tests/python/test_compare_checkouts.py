@@ -11,10 +11,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-import compare_checkouts  # noqa: E402
-import same_bits  # noqa: E402
+from bench import compare_checkouts, same_bits  # noqa: E402
 
 ONE, TWO, THREE, FOUR = (digit * 16 for digit in "1234")
 OLD_TO_NEW = {ONE: "a" * 16, TWO: "b" * 16, THREE: "c" * 16, FOUR: "d" * 16}

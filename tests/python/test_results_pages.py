@@ -12,10 +12,10 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "bench"))
+sys.path.insert(0, str(ROOT / "tests"))
 sys.path.insert(0, str(ROOT / "samples" / "street"))
 
-import benching  # noqa: E402
+from bench import benching  # noqa: E402
 from report import BEGIN, END, strip_block, with_strip  # noqa: E402
 
 README = (ROOT / "README.md").read_text("utf-8")

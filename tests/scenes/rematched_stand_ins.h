@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every kind of stand-in of one painted mesh, its color and brightness found again by 16 times the
-// rays. For tests and for tests/bench/replace_shapes.cpp.
+// rays. For tests and for tests/bench/sheets/replace_shapes.cpp.
 #pragma once
 
 #include "hierarchy/evaluators/brightness_match.h"

@@ -2,7 +2,7 @@
 // HashSet: a set of hashes whose greatest size is known before.
 // Our own beside std::unordered_set: it takes one allocation and hashes nothing again. With it, and
 // visited nodes that are handed out instead of copied, a cut takes four fifths of the time
-// (tests/bench/bench_cut.cpp).
+// (tests/bench/speed/bench_cut.cpp).
 #pragma once
 
 #include "base/hash.h"

@@ -18,7 +18,7 @@ constexpr double kMostLooks = 524288;
 // Taste: more find thinner edges, more slowly.
 constexpr double kFiner = 2;
 // The looks that are added beside one that is alone.
-// Fitted: by tests/bench/bench_lights.py, pixels that are off in the corridor.
+// Fitted: by tests/bench/speed/bench_lights.py, pixels that are off in the corridor.
 constexpr int kCloser = 4;
 // The cosine between surfaces that face about the same way.
 // Taste: a larger one makes more points alone.

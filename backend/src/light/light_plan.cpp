@@ -20,7 +20,7 @@ constexpr double kShare = 0.05;
 // Taste: more keep the points dense with many lamps, more slowly.
 constexpr double kRays = 2e7;
 // The fewest points that distinguish a hundred rooms.
-// Fitted: by tests/bench/bench_lights.py, a house of 100 rooms and 400 lamps.
+// Fitted: by tests/bench/speed/bench_lights.py, a house of 100 rooms and 400 lamps.
 constexpr double kRoomPoints = 12000;
 // The fewest points with very many lamps.
 // Taste: fewer leave most things without a point.
@@ -39,7 +39,7 @@ constexpr size_t kMostLamps = 20000;
 constexpr uint64_t kMostTriangles = 2'000'000;
 // The share of all lamps that may light a point at most: POV-Ray remembers for each lamp what last
 // hid it, but not for the lamps of groups, whose shadows take up to 2.4 times as long.
-// Fitted: by tests/bench/bench_lights.py, a house, a corridor and a market of 400 lamps each.
+// Fitted: by tests/bench/speed/bench_lights.py, a house, a corridor and a market of 400 lamps each.
 constexpr double kWorth = 0.6;
 
 uint64_t distinct_triangles(std::span<const DrawnThing> drawn) {

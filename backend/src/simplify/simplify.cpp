@@ -11,14 +11,14 @@ namespace lodestone::simplify {
 namespace {
 
 // The fit of mode fast; see FitOptions.
-// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
+// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr FitOptions kFastFit{8, 0.5, 1, 1, 2, false, 0.1f, 0};
 // The fit of mode best; see FitOptions.
-// Fitted: by tests/bench/bench_simplify.py, 36 pairs and 16 turned models.
+// Fitted: by tests/bench/peers/bench_simplify.py, 36 pairs and 16 turned models.
 constexpr FitOptions kBestFit{20, 1, 2, 8, 5, true, 0.02f, 0.6f};
 /// The share of the triangles that mode best collapses too many and puts back where the mesh is
 /// farthest off, which is in a few spots.
-/// Fitted: by tests/bench/bench_simplify.py, Hausdorff distance and CPU of nine shared models.
+/// Fitted: by tests/bench/peers/bench_simplify.py, Hausdorff distance, CPU of nine shared models.
 constexpr double kPutBack = 0.0025;
 
 void check_arguments(const Mesh& mesh, std::span<const size_t> targets,

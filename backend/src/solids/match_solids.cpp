@@ -51,7 +51,7 @@ void match_composite(Composite& composite, const Attributes& wanted, double floo
     constexpr int kLast = 3;
     // The rounds with all rays where solids are far off, because they stand and hide much of each
     // other.
-    // Fitted: by tests/bench/bench_replace.py, a cube by 8 solids.
+    // Fitted: by tests/bench/sheets/bench_replace.py, a cube by 8 solids.
     constexpr int kMost = 8;
     const MatchError far{0.01, 0.003, 0.005};
     const MatchError rough{0.004, 0.004, 0.004};

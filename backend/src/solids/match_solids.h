@@ -17,7 +17,7 @@ void match_composite(Composite& composite, const Attributes& wanted, double floo
 
 /// The change, in parts of the radius of gyration, below which more rays are not needed; as
 /// kSettled, for several solids.
-/// Fitted: by tests/bench/bench_replace.py and pictures of samples/street.
+/// Fitted: by tests/bench/sheets/bench_replace.py and pictures of samples/street.
 inline constexpr double kSettledComposite = 0.0005;
 
 /// Sets area and centroid, as all rays see them, right by scaling and moving all solids alike,

@@ -16,9 +16,9 @@ namespace {
 
 // The errors of the vertices' colors that are allowed, as the root of the mean square over the mean
 // color: for one color for all, and in addition for merged colors.
-// Fitted: by tests/bench/sheet_replace.py and the street: 0.5 leaves the book pile too dark.
+// Fitted: by tests/bench/sheets/sheet_replace.py and the street: 0.5 leaves the book pile too dark.
 constexpr double kOneColor = 0.3;
-// Fitted: by tests/bench/sheet_replace.py and the street: 0.2 paints white fences.
+// Fitted: by tests/bench/sheets/sheet_replace.py and the street: 0.2 paints white fences.
 constexpr double kMerged = 0.25;
 
 /// The vertices of one color: light by color, and the light that falls on them.

@@ -43,13 +43,13 @@ std::optional<ClearSolid> fit_clear_ellipsoid(const Attributes& attributes, cons
 /// radius of gyration, 32,768 to 0.07 %; objects that are mostly air need twice as many, all of
 /// them.
 /// The most rays that settle a solid, in multiples of those it was fitted by.
-/// Fitted: by tests/bench/bench_replace.py on the reference shapes.
+/// Fitted: by tests/bench/sheets/bench_replace.py on the reference shapes.
 inline constexpr uint64_t kRaysOfSolid = 8;
 /// The change by the last half of the rays below which they end (VisibleOptions).
-/// Fitted: by tests/bench/bench_replace.py and pictures of samples/street.
+/// Fitted: by tests/bench/sheets/bench_replace.py and pictures of samples/street.
 inline constexpr double kSettled = 0.0008;
 /// The rays that settle a clear solid, in multiples of those it was fitted by.
-/// Fitted: by tests/bench/bench_replace.py on reference shapes that are mostly air.
+/// Fitted: by tests/bench/sheets/bench_replace.py on reference shapes that are mostly air.
 inline constexpr uint64_t kRaysOfClear = 16;
 
 /// A primitive that was fitted by few rays (`rough`), corrected by more rays (`sure`) of the same

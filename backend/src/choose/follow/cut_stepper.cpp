@@ -12,16 +12,16 @@ namespace {
 // The limits from which on choosing anew is faster than a step. Either less than one of kLeastKept
 // nodes has not expired, or more than one of kLeastShare has to be decided again; kSome nodes are
 // never too many.
-// Fitted: by tests/bench/bench_cut.cpp, leaps of 1000 m over 1,048,576 houses.
+// Fitted: by tests/bench/speed/bench_cut.cpp, leaps of 1000 m over 1,048,576 houses.
 constexpr size_t kLeastKept = 4;
-// Fitted: by tests/bench/bench_cut.cpp, steps of 100 m over 1,048,576 houses.
+// Fitted: by tests/bench/speed/bench_cut.cpp, steps of 100 m over 1,048,576 houses.
 constexpr size_t kLeastShare = 16;
 // Taste: a larger number makes steps of small cuts slower, a smaller one chooses more anew.
 constexpr size_t kSome = 64;
 // The most choices in a row that keep no facts for steps. Choosing takes twice as long when it
 // keeps them. After a useless step none are kept once, after the next one three times, and so on up
 // to this.
-// Fitted: by tests/bench/bench_cut.cpp, a walk over 1,048,576 houses with steps of 100 m.
+// Fitted: by tests/bench/speed/bench_cut.cpp, a walk over 1,048,576 houses with steps of 100 m.
 constexpr uint32_t kMostPlain = 31;
 // How many nodes ahead memory is asked for.
 // Taste: as kAhead in cut_chooser.cpp; more displace what is still needed, fewer come too late.

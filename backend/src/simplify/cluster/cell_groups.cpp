@@ -13,7 +13,7 @@ namespace {
 // The budget and the costs of merging across grid lines, which gives less error but takes longer
 // than the tree: nanoseconds for each triangle of the input, for each cell it begins with, and for
 // each it merges.
-// Fitted: by tests/bench/bench_simplify.py, 36 pairs: 0.6 of simplifySloppy's error.
+// Fitted: by tests/bench/peers/bench_simplify.py, 36 pairs: 0.6 of simplifySloppy's error.
 constexpr double kMergeBudget = 4;
 // Fitted: to measured times of this step (nanoseconds); the script was not kept.
 constexpr double kBeginCost = 135;
@@ -23,7 +23,7 @@ constexpr double kMergeCost = 600;
 // Taste: more give less error and take longer.
 constexpr double kMostMerged = 3;
 // The share of the target from which on the tree's tries end.
-// Fitted: by tests/bench/bench_simplify.py, 36 pairs; a larger share takes more tries.
+// Fitted: by tests/bench/peers/bench_simplify.py, 36 pairs; a larger share takes more tries.
 constexpr double kNear = 0.95;
 // The share that is enough when copies were left out.
 // Taste: nearer takes more rounds of grouping.

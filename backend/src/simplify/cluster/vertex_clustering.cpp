@@ -13,7 +13,7 @@ namespace lodestone::simplify {
 namespace {
 
 // The cells of the fine grid for each one that the tree leaves: enough to choose from.
-// Fitted: by tests/bench/bench_simplify.py, 36 pairs: 0.6 of simplifySloppy's error.
+// Fitted: by tests/bench/peers/bench_simplify.py, 36 pairs: 0.6 of simplifySloppy's error.
 constexpr double kCellsPerLeft = 1.3;
 // The bytes of scratch memory that are reserved, for each vertex and each cell.
 // Law: the sum of the arrays by vertex.

@@ -28,22 +28,22 @@ constexpr size_t kWork = 40;
 /// The limits of passes: small ones choose with fresher costs, large ones take less time. A share
 /// above 0.35 ruins plates with holes, even far from the target: all flat edges go in one pass,
 /// then round ones.
-/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
+/// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr PassLimits kFast{0.35, 2.0, 1.0 / 3, 6};
-// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
+// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr PassLimits kBest{0.12, 1.0, 0.5, 1};
 /// From this many times the target's triangles on, a pass may take dearer edges: triangles twice as
 /// large cost eight times as much, so such costs are small beside those to come.
-/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
+/// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr double kFar = 4;
 double slack_far(double times, double most) {
     return std::clamp(std::pow(times / kFar, 1.5), 1.0, most);
 }
 /// A last pass that wants less than this share of the triangles gets kRestReach times more
 /// candidates: the few it needs could all be impossible, and another pass prices every edge again.
-/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
+/// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr double kRest = 0.05;
-// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
+// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr double kRestReach = 4;
 /// The rounds of a pass. Chunks go through their candidates at the same time, in rounds of rising
 /// costs, so that the dearest edges of one chunk do not go before cheaper ones of another.
@@ -59,7 +59,7 @@ constexpr double kPoor = 0.35;
 /// The candidates that a chunk holds for each of its vertices, the cheapest. If it held all within
 /// the limit, chunks with a plain surface would go before dearer ones do. kHeld is enough for any
 /// share as long as most candidates can be collapsed; kMostHeld is for where they cannot.
-/// Fitted: by tests/bench/bench_simplify.py, error and CPU of nine shared models (before: 2).
+/// Fitted: by tests/bench/peers/bench_simplify.py, error and CPU of nine shared models (before: 2).
 constexpr double kHeld = 1.15;
 // Taste: more hold more memory and let plain chunks go first.
 constexpr double kMostHeld = 2;

@@ -18,13 +18,13 @@ namespace {
 /// The weight of open borders, relative to that of paint: the surface ends there, and only that is
 /// seen. With the same weight they keep triangles that the surface beside them needs more (leaves,
 /// a car body, terrain).
-/// Fitted: by tests/bench/bench_simplify.py, silhouette and mean error of nine shared models.
+/// Fitted: by tests/bench/peers/bench_simplify.py, silhouette and mean error of nine shared models.
 constexpr double kOpen = 0.15;
 
 /// Edges that are held count as at least this share of the square of a typical edge, but at most
 /// kMostRaised times what they are: the tip of an outline is as far away however short its edges
 /// are.
-/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
+/// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr double kLeastSquare = 0.3;
 // Taste: a larger number holds specks, too.
 constexpr double kMostRaised = 1e4;

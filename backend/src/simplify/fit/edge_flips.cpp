@@ -11,7 +11,7 @@ namespace {
 
 /// The cost of a turned normal: the square of its error times this share of the size of the two
 /// triangles.
-/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
+/// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr float kTurn = 0.02f;
 /// The share that a flip must save of the cost of the two triangles' samples.
 /// Taste: a larger share flips fewer edges back and forth.

@@ -8,7 +8,7 @@ namespace lodestone::simplify {
 namespace {
 
 /// The weight of outlines, relative to the surface: an edge counts as this many squares on it.
-/// Fitted: by tests/bench/bench_simplify.py; other weights are in backend/EXPERIMENTS.md.
+/// Fitted: by tests/bench/peers/bench_simplify.py; other weights are in backend/EXPERIMENTS.md.
 constexpr float kBorder = 2;
 // The most steps along a border.
 // Taste: more find nearer edges, more slowly.

@@ -8,13 +8,13 @@ namespace lodestone::simplify {
 namespace {
 
 /// The weight of a vertex, relative to the samples of the surface around it.
-/// Fitted: by tests/bench/bench_simplify.py, nine shared models at four targets.
+/// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr float kWeight = 0.3f;
 /// A vertex sticks out if it is this many times the samples' spacing away from all of them.
 /// Taste: a smaller number searches for more vertices.
 constexpr float kFar = 2;
 /// A miss of less than this many times the misses of the samples around is ignored.
-/// Fitted: by tests/bench/bench_simplify.py, largest distance of nine shared models.
+/// Fitted: by tests/bench/peers/bench_simplify.py, largest distance of nine shared models.
 constexpr float kTypical = 4;
 // The most triangles around a vertex that are searched.
 // Taste: more find nearer samples at hubs, more slowly.

@@ -15,10 +15,10 @@ namespace {
 // Taste: fewer do not hold the shape of coarse levels.
 constexpr size_t kFewSamples = 1000;
 /// The samples on a triangle from which on flips are worth their time.
-/// Fitted: by tests/bench/bench_simplify.py, nine shared models at 50 % (3 instead of 6).
+/// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at 50 % (3 instead of 6).
 constexpr size_t kSamplesToFlip = 3;
 /// The sweeps are this number times the square root of the original's triangles for each vertex.
-/// Fitted: by tests/bench/bench_simplify.py, error and CPU of nine shared models.
+/// Fitted: by tests/bench/peers/bench_simplify.py, error and CPU of nine shared models.
 constexpr double kSweeps = 0.7;
 /// Parts with no more triangles than this, and with at least this closed_share(), are not moved.
 /// Fitted: by pictures of samples/street, where a garden wall consists of such bricks.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs a bench that is a C++ program, and writes what it prints as a page of results.
 
-    /usr/bin/python3 tests/bench/bench_program.py cut [--write]
-    /usr/bin/python3 tests/bench/bench_program.py group [--write] [-- --flat 1000 STORE ...]
+    /usr/bin/python3 tests/bench/speed/bench_program.py cut [--write]
+    /usr/bin/python3 tests/bench/speed/bench_program.py group [--write] [-- --flat 1000 STORE ...]
 
 Builds the program in build/release first; its source (bench_cut.cpp, bench_group.cpp) tells what it
 measures and what the words after -- are. No number makes it fail.
@@ -11,8 +11,10 @@ measures and what the words after -- are. No number makes it fail.
 import argparse
 import subprocess
 import sys
+from pathlib import Path
 
-import benching
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 
 BUILD = benching.ROOT / "build" / "release"
 TITLES = {"cut": "Choosing", "group": "Grouping"}

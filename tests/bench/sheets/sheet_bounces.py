@@ -2,7 +2,7 @@
 """Indirect light beside Cycles with as many diffuse bounces: pictures, differences and seconds.
 
     BLENDER_USER_SCRIPTS=build/release/stage blender -b --factory-startup \\
-        --python tests/bench/sheet_bounces.py -- [--bounces 3] [--scenes cornell room street]
+        --python tests/bench/sheets/sheet_bounces.py -- [--bounces 3] [--scenes cornell room street]
         [--size 320 180] [--samples 256] [--errors 1] [--png OUT] [--write]
 
 A Cornell box, a room behind a window (sun and sky), a street. From left to right: Cycles, Lodestone
@@ -19,9 +19,9 @@ from pathlib import Path
 
 import bpy
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blender"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-import benching  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blender"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 import blender_scenes as scenes  # noqa: E402
 
 SHOWN = 4

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How alike outlines of the 20 reference shapes, and a cube, are to those of their replacements.
 
-    /usr/bin/python3 tests/bench/bench_replace.py [--build build/release] [--write]
+    /usr/bin/python3 tests/bench/sheets/bench_replace.py [--build build/release] [--write]
 
 The shapes come from LODESTONE_TOOLS/reference_shapes (default ../shared/tools), and are skipped
 with a sentence without it. Intersection over union of silhouettes, mean of 20 views; 0 where there
@@ -22,9 +22,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import benching
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 TOOLS = Path(os.environ.get("LODESTONE_TOOLS") or ROOT.parent / "shared" / "tools")
 GOAL = 0.68
 SIMPLE = ("sphere", "bounding box", "oriented bound", "box", "ellipsoid")

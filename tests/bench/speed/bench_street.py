@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How much less the street costs POV-Ray approximated than in full, with the spread of the rounds.
 
-    /usr/bin/python3 tests/bench/bench_street.py [--blend build/samples/street.blend] [--rounds 5]
+    /usr/bin/python3 tests/bench/speed/bench_street.py [--blend build/samples/street.blend]
+        [--rounds 5]
 
 samples/quickstart.sh makes the street, its levels and the stage; levels that are stale are built
 first. All pictures come from one batch job with the same antialiasing, the two kinds in turns, so
@@ -16,9 +17,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import benching
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
 ADDON = STAGE / "addons" / "lodestone"
 GOAL = 5.0  # full detail over approximated

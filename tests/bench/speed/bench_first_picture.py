@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How long the first F12 of a scene takes, and the next ones, beside a picture of full detail.
 
-    /usr/bin/python3 tests/bench/bench_first_picture.py [FILE.blend ...] [--rounds 5] [--write]
+    /usr/bin/python3 tests/bench/speed/bench_first_picture.py [FILE.blend ...] [--rounds 5]
+        [--write]
 
 Without files: build/samples/street.blend, which samples/quickstart.sh makes. Every round opens the
 file in a Blender of its own, with no levels, and counts what both programs take from F12 to the
@@ -19,9 +20,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import benching
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
 INSIDE = Path(__file__).with_name("bench_first_picture_blender.py")
 PICTURES = {  # goal: most of it over the picture of full detail

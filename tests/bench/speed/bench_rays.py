@@ -2,8 +2,8 @@
 """What details of their own for reflections, shadows and indirect light save POV-Ray, what they
 change, and the same for many lamps drawn as few.
 
-    /usr/bin/python3 tests/bench/bench_rays.py [--scenes mirror contact] [--rounds 5] [--png OUT]
-        [--write]
+    /usr/bin/python3 tests/bench/speed/bench_rays.py [--scenes mirror contact] [--rounds 5]
+        [--png OUT] [--write]
 
 Each scene of ray_scenes.py is drawn with one detail for all rays (off) and with each class's own
 (on), in turns; with one class alone, and at twice the Pixel Error, once. Differences are of covered
@@ -17,12 +17,14 @@ import sys
 from array import array
 from pathlib import Path
 
-import benching
 import numpy
-import ray_scenes
-from bench_lights import camera_of
 
-ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
+from bench.scenes import ray_scenes  # noqa: E402
+from bench.speed.bench_lights import camera_of  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[3]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
 NEAR = 3  # pixels from a contact
 GOAL = 5.0  # of the largest difference there

@@ -2,8 +2,8 @@
 """Pictures of what controls do that no panel shows, with their numbers, for the add-on's pages.
 
     BLENDER_USER_SCRIPTS=build/release/stage blender -b --factory-startup \\
-        --python tests/bench/sheet_controls.py -- [--sheets moving depth deforming build] [--out F]
-        [--write]
+        --python tests/bench/sheets/sheet_controls.py -- [--sheets moving depth deforming build]
+        [--out F] [--write]
 
 moving: a crowd of which some are carried past or stand in the dark, without and with Coarser When
 Moving or Dark. depth: false colors of rows of heads, without and with Depth Exaggeration.
@@ -21,9 +21,9 @@ from pathlib import Path
 
 import bpy
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "blender"))
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-import benching  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "blender"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 import blender_scenes as scenes  # noqa: E402
 
 MARGIN = 4

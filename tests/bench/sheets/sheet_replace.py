@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stand-ins beside what they stand for: twelve groups, 64, 32, 16, 8 and 4 pixels large.
 
-    /usr/bin/python3 tests/bench/sheet_replace.py [--only tree,crowd] [--png OUT.png]
+    /usr/bin/python3 tests/bench/sheets/sheet_replace.py [--only tree,crowd] [--png OUT.png]
         [--write]
 
 A group's longest side has so many pixels. Each picture, by POV-Ray, shows many copies of it beside
@@ -24,14 +24,16 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import benching
 import numpy
-from sheet_groups import GROUPS
-from sheet_materials import materials
-from sheet_measure import painted, parts_of, samples, seen
-from sheet_shapes import Filler
 
-ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
+from bench.scenes.crowd_groups import GROUPS  # noqa: E402
+from bench.scenes.mesh_materials import materials  # noqa: E402
+from bench.sheets.sheet_measure import painted, parts_of, samples, seen  # noqa: E402
+from bench.scenes.mesh_shapes import Filler  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[3]
 COPIES = {64: 2, 32: 4, 16: 6, 8: 8, 4: 12}  # along a side
 GAP = 1.17  # between copies, over their diameter; no whole number of pixels
 LEAST_TRIANGLES = 4

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What approximating 400 lamps saves POV-Ray, and what it changes.
 
-    /usr/bin/python3 tests/bench/bench_lights.py [--scenes house corridor market] [--rounds 5]
+    /usr/bin/python3 tests/bench/speed/bench_lights.py [--scenes house corridor market] [--rounds 5]
         [--write]
 
 Each scene of light_scenes.py is drawn with all lamps and with approximated ones, in turns. The
@@ -15,10 +15,11 @@ import os
 import sys
 from pathlib import Path
 
-import benching
-import light_scenes
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
+from bench.scenes import light_scenes  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
 KINDS = ("all", "approximated")
 GOALS = {"cpu": 5.0, "mean": 2.5, "room": 2.0}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a kit-bashed city in one mesh costs POV-Ray, as one object and with its loose parts as many.
 
-    /usr/bin/python3 tests/bench/bench_loose.py [--side 32] [--rounds 5] [--pictures FOLDER]
+    /usr/bin/python3 tests/bench/speed/bench_loose.py [--side 32] [--rounds 5] [--pictures FOLDER]
         [--write]
 
 The city has SIDE x SIDE plots with buildings of some parts each. Each way its levels are built,
@@ -18,9 +18,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import benching
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
 ADDON = STAGE / "addons" / "lodestone"
 CAMERAS = ("street", "roof", "outside")

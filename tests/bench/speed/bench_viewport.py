@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How much a redraw of the 3D Viewport takes with levels, beside Blender's drawing of everything.
 
-/usr/bin/python3 tests/bench/bench_viewport.py [--scene build/samples/street.blend] [--rounds 5]
-    [--camera near] [--stage build/release/stage] [--json build/bench/viewport.json]
+/usr/bin/python3 tests/bench/speed/bench_viewport.py [--scene build/samples/street.blend]
+    [--rounds 5] [--camera near] [--stage build/release/stage] [--json build/bench/viewport.json]
     [--pictures DIR] [--write]
 
 The scene's levels must be built beside it (batch.py build). Needs Xvfb, and OpenGL in software.
@@ -20,9 +20,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import benching
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 KINDS = ("levels", "solid", "material", "levels overlays", "solid overlays")
 GOALS = {"redraw_cpu_s": 0.25, "first_cpu_s": 0.25, "memory": 0.25}  # of Solid's
 UNITS = (("redraw_cpu_s", 1e-3, "ms CPU a redraw"), ("first_cpu_s", 1.0, "s CPU to the first"),

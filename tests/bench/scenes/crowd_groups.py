@@ -4,7 +4,7 @@
 import math
 import random
 
-from sheet_shapes import Group, Shape, cross, lathe, placed
+from bench.scenes.mesh_shapes import Group, Shape, cross, lathe, placed
 
 
 def _unit(rng: random.Random) -> list[float]:

@@ -3,7 +3,7 @@
 
 povray_export/texture/surface_finish.cpp holds the result.
 
-    blender -b --factory-startup --python tests/bench/fit_finish.py -- FOLDER
+    blender -b --factory-startup --python tests/bench/peers/fit_finish.py -- FOLDER
 
 Renders spheres of every roughness in Cycles (direct light only) under three suns and in a uniform
 sky, and in POV-Ray a set of spheres with one highlight or one diffuse term each. Light adds up, so

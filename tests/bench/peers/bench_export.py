@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What exporting costs beside the POV-Ray add-on that Blender brings, on the stress scenes.
 
-    /usr/bin/python3 tests/bench/bench_export.py [--scenes S1 S2 S3] [--rounds 5] [--small]
+    /usr/bin/python3 tests/bench/peers/bench_export.py [--scenes S1 S2 S3] [--rounds 5] [--small]
         [--write]
 
 S1 is one smooth mesh of 500,002 triangles, S2 2,000 copies of one tree, S3 3,001 different meshes
@@ -19,9 +19,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import benching
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
 TOOLS = Path(os.environ.get("LODESTONE_TOOLS") or ROOT.parent / "shared" / "tools")
 INSIDE = Path(__file__).with_name("bench_export_blender.py")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How Lodestone's simplification compares with its peers, in one run, on the shared models.
 
-    /usr/bin/python3 tests/bench/bench_simplify.py [--rounds 5] [--models skull ...] [--small]
+    /usr/bin/python3 tests/bench/peers/bench_simplify.py [--rounds 5] [--models skull ...] [--small]
         [--write]
 
 Blender's Decimate, Debian's meshoptimizer (with simplifySloppy), CGAL, OpenMesh and `lodestone
@@ -26,9 +26,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import benching
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 BUILD = Path(os.environ.get("LODESTONE_BUILD") or ROOT / "build" / "release")
 TOOLS = Path(os.environ.get("LODESTONE_TOOLS") or ROOT.parent / "shared" / "tools")
 DATA = Path(os.environ.get("LODESTONE_DATA") or ROOT.parent / "shared" / "data")
@@ -114,7 +115,7 @@ def build_peers(folder: Path) -> Path | None:
         say(f"skipped, there is no {source}")
         return None
     place = folder / "peers"
-    configure = ["cmake", "-S", Path(__file__).with_name("peers"), "-B", place]
+    configure = ["cmake", "-S", Path(__file__).parent, "-B", place]
     if run([*configure, f"-DMESH_EVAL={source}"]) is None:
         return None
     run(["cmake", "--build", place, "--", "-k"])

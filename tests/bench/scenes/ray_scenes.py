@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy
-import light_scenes
-import sheet_groups
-from sheet_materials import materials
-from sheet_shapes import Filler, placed
+from bench.scenes import crowd_groups, light_scenes
+from bench.scenes.mesh_materials import materials
+from bench.scenes.mesh_shapes import Filler, placed
 
 DATA = Path(
-    os.environ.get("LODESTONE_DATA") or Path(__file__).resolve().parents[3] / "shared" / "data"
+    os.environ.get("LODESTONE_DATA") or Path(__file__).resolve().parents[4] / "shared" / "data"
 )
 # Of the data: which axis is up, and how high they are
 FIGURES = {"beetle_open": ("y", 0.7), "fandisk": ("z", 1.0)}
@@ -97,11 +96,11 @@ class Maker(light_scenes.Maker):
         return self.model.add_faces(name, name, buffers, [self.filler.materials[slot]])
 
     def figure(self, kind: str, slot: str, by) -> None:
-        """One of FIGURES, or a tree of sheet_groups.py."""
+        """One of FIGURES, or a tree of crowd_groups.py."""
         key = (kind, "" if kind == "tree" else slot)
         if key not in self.meshes:
             if kind == "tree":
-                self.meshes[key] = self.filler.put(sheet_groups.tree(3000)), None
+                self.meshes[key] = self.filler.put(crowd_groups.tree(3000)), None
             else:
                 points, triangles = read_ply(DATA / "models" / f"{kind}.ply")
                 points = stood(points, *FIGURES[kind])

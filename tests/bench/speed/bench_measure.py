@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What measuring costs beside the probe it has to beat, in one run.
 
-    /usr/bin/python3 tests/bench/bench_measure.py [--seeds 100] [--rounds 5] [--json FILE]
+    /usr/bin/python3 tests/bench/speed/bench_measure.py [--seeds 100] [--rounds 5] [--json FILE]
         [--write]
 
 Builds `bench_measure` in build/release and the probes of LODESTONE_TOOLS (default ../shared/tools)
@@ -19,9 +19,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import benching
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 TOOLS = Path(os.environ.get("LODESTONE_TOOLS") or ROOT.parent / "shared" / "tools")
 DATA = Path(os.environ.get("LODESTONE_DATA") or ROOT.parent / "shared" / "data")
 BUILD = ROOT / "build" / "release"
