@@ -15,6 +15,7 @@ import bpy
 import blender_scenes as scenes
 from lodestone.bridge.live import live_view
 from lodestone.bridge.scene import quality_lenses
+from lodestone.bridge.scene_settings import SceneSettings
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.problems import Problems
 from lodestone.core.session.addon_session import addon_session
@@ -301,13 +302,13 @@ class Drawn(unittest.TestCase):
     def test_depth_exaggeration_is_coarser_beyond_the_focus_and_finer_before_it(self):
         camera = self.scene.camera
         plain = self.chosen()
-        self.assertIsNone(quality_lenses.modifiers((), camera, False))
+        self.assertIsNone(quality_lenses.modifiers(SceneSettings(self.scene), (), camera))
         settings, dof = camera.data.lodestone, camera.data.dof
         before = dof.focus_distance
         try:
             settings.depth_exaggeration = 3.0
             dof.focus_distance = 40.0  # the balls are 400 m away: 100 times as coarse, 64 at most
-            made = quality_lenses.modifiers((), camera, False)
+            made = quality_lenses.modifiers(SceneSettings(self.scene), (), camera)
             self.assertEqual((made.depth, made.depth_focus), (3.0, 40.0))
             far = self.chosen()
             dof.focus_distance = 4000.0
@@ -337,7 +338,7 @@ class Drawn(unittest.TestCase):
         dof.focus_object = target
         bpy.context.view_layer.update()
         try:
-            made = quality_lenses.modifiers((), camera, False)
+            made = quality_lenses.modifiers(SceneSettings(self.scene), (), camera)
             self.assertAlmostEqual(made.depth_focus, 250.0, 3)
         finally:
             dof.focus_object = None

@@ -5,6 +5,7 @@ import os
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import addon_path  # noqa: F401
 from lodestone.core.batch.command_line import jobs, parser
@@ -50,6 +51,17 @@ class Verbs(unittest.TestCase):
         self.assertEqual(verb_of("build").results({"store": "levels"}), ["levels/tileset.json"])
         for verb in VERBS:
             self.assertEqual(verb.results({}), [])
+
+    def test_pictures_and_scenes_are_printed_and_stores_are_not(self):
+        self.assertEqual(verb_of("render").lines({"picture": "a.png"}), ["a.png"])
+        self.assertEqual(verb_of("export").lines({"scene": "a/scene.pov"}), ["a/scene.pov"])
+        self.assertEqual(verb_of("build").lines({"store": "levels"}), [])
+
+    def test_all_tell_how_large_a_scene_is(self):
+        totals = SimpleNamespace(objects=1, occurrences=2, triangles_placed=24, triangles_unique=12)
+        model = SimpleNamespace(totals=lambda: totals)
+        for verb in VERBS:
+            self.assertEqual(verb.about(model)["model"]["triangles_placed"], 24)
 
 
 class Outputs(unittest.TestCase):

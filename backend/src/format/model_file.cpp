@@ -22,7 +22,8 @@ std::string extension_of(const std::filesystem::path& path) {
     return extension;
 }
 
-Model model_of(Mesh mesh, const std::string& name) {
+/// The model of a file that holds one mesh. `uid`: that of its object, which stores keep.
+Model model_of(Mesh mesh, const std::string& name, const char* uid) {
     Model model;
     Material& material = model.materials.emplace_back();
     if (!mesh.colors.empty()) {
@@ -30,7 +31,7 @@ Model model_of(Mesh mesh, const std::string& name) {
         material.base_color = glm::dvec3(1.0);
     }
     Object object;
-    object.uid = "ply:0";
+    object.uid = uid;
     object.name = name;
     object.representations.emplace_back();
     Representation& finest = object.representations[0];
@@ -64,7 +65,7 @@ Model read_model(const std::filesystem::path& path, Problems& problems) {
         return read_obj(read_file(path), path, problems);
     if (extension == ".ply")
         return model_of(read_ply(read_file(path), path.stem().string(), problems),
-                        path.stem().string());
+                        path.stem().string(), "ply:0");
     if (extension == ".glb" || extension == ".gltf") {
         const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
         return read_glb(read_file(path), folder, path.stem().string(), problems);
@@ -100,34 +101,54 @@ Mesh flattened(const Model& model, std::vector<uint32_t>& materials) {
     return whole;
 }
 
-void write_model(const std::filesystem::path& path, const Model& model) {
-    const std::string extension = extension_of(path);
-    if (extension == ".glb") {
-        write_file(path, write_glb(model));
-        return;
-    }
-    if (extension != ".obj" && extension != ".ply")
-        fail(Status::InvalidArgument, "'", path.string(),
-             "' is not written: only .glb, .obj and .ply are");
-    std::vector<uint32_t> slots;
-    Mesh mesh = flattened(model, slots);
+namespace {
+
+/// A model as one mesh, and the materials of its slots.
+struct FlatModel {
+    Mesh mesh;
     std::vector<Material> materials;
-    materials.reserve(slots.size());
+};
+
+FlatModel flat(const Model& model) {
+    FlatModel out;
+    std::vector<uint32_t> slots;
+    out.mesh = flattened(model, slots);
+    out.materials.reserve(slots.size());
     for (const uint32_t index : slots)
-        materials.push_back(index < model.materials.size() ? model.materials[index] : Material{});
-    if (extension == ".ply") {
-        if (std::none_of(materials.begin(), materials.end(),
-                         [](const Material& material) { return material.vertex_colors; }))
-            mesh.colors.clear();  // nobody sees them
-        write_file(path, write_ply(mesh));
-        return;
-    }
+        out.materials.push_back(index < model.materials.size() ? model.materials[index]
+                                                               : Material{});
+    return out;
+}
+
+void write_ply_file(const std::filesystem::path& path, FlatModel model) {
+    if (std::none_of(model.materials.begin(), model.materials.end(),
+                     [](const Material& material) { return material.vertex_colors; }))
+        model.mesh.colors.clear();  // nobody sees them
+    write_file(path, write_ply(model.mesh));
+}
+
+void write_obj_files(const std::filesystem::path& path, const FlatModel& model) {
     const std::filesystem::path library = library_of(path);
-    const MaterialLibrary written = write_mtl(materials);
+    const MaterialLibrary written = write_mtl(model.materials);
     for (const auto& [name, picture] : written.pictures)
         write_file(path.parent_path() / name, picture->bytes);
     write_file(library, written.text);
-    write_file(path, write_obj(mesh, materials, path.stem().string(), library.filename().string()));
+    write_file(path, write_obj(model.mesh, model.materials, path.stem().string(),
+                               library.filename().string()));
+}
+
+}  // namespace
+
+void write_model(const std::filesystem::path& path, const Model& model) {
+    const std::string extension = extension_of(path);
+    if (extension == ".glb")
+        return write_file(path, write_glb(model));
+    if (extension == ".ply")
+        return write_ply_file(path, flat(model));
+    if (extension == ".obj")
+        return write_obj_files(path, flat(model));
+    fail(Status::InvalidArgument, "'", path.string(),
+         "' is not written: only .glb, .obj and .ply are");
 }
 
 }  // namespace lodestone::format

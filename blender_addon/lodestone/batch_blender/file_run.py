@@ -167,7 +167,8 @@ class FileRun:
             picture_requirements.grease_pencil(self.problems)
         with extraction.model as model:
             totals = model.totals()
-            self.result.setdefault("model", run_report.model_part(totals))
+            for name, part in self.verb.about(model).items():
+                self.result.setdefault(name, part)
             spent = {"cpu_s": time.process_time() - cpu, "wall_s": time.monotonic() - wall}
             self.result.setdefault("extract", spent)
             if totals.occurrences == 0 and not picture_requirements.something(scene, self.problems):

@@ -43,6 +43,11 @@ def is_exact(settings: Any) -> bool:
     return pixel_error(settings) == 0.0 and not budget(settings)
 
 
+def is_coarser_moving_dark(settings: Any) -> bool:
+    """Whether what moves or lies in the dark is drawn coarser."""
+    return settings.use_levels and settings.coarser_moving_dark
+
+
 def ray_classes(settings: Any) -> int:
     """The ray classes of renders, as native.Rays: those that may meet coarser levels than the
     camera's."""

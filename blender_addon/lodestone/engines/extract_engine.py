@@ -140,10 +140,9 @@ def _camera(depsgraph, name):
 def _modifiers(depsgraph, frame_set, request, extraction):
     """Of each camera of a request. What moves is told to the extraction's model."""
     settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
-    coarser = settings.use_levels and settings.coarser_moving_dark
     names = [name for name, _ in request.cameras]
     closing = [None] * len(names)
-    if coarser:
+    if quality_settings.is_coarser_moving_dark(settings):
 
         def seen():
             asked = request.cameras
@@ -153,9 +152,8 @@ def _modifiers(depsgraph, frame_set, request, extraction):
         closing = shutter_motion.read(depsgraph, frame_set, moving, model, seen)
     parts_of = quality_lenses.parts_in(extraction)
     detail = quality_lenses.detail(depsgraph.objects, parts_of, extraction.problems)
-    unseen = (settings.off_screen, quality_settings.ray_classes(settings))
     return [
-        quality_lenses.modifiers(detail, _camera(depsgraph, name), coarser, end, *unseen)
+        quality_lenses.modifiers(settings, detail, _camera(depsgraph, name), end)
         for name, end in zip(names, closing)
     ]
 

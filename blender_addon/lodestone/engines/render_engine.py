@@ -136,9 +136,7 @@ class _Run:
         addon_session().changed_shapes.reading()
         settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
         self.keep = settings.keep_scene_files
-        self.coarser = settings.use_levels and settings.coarser_moving_dark
-        self.off_screen = settings.off_screen
-        self.ray_classes = quality_settings.ray_classes(settings)
+        self.scene_settings = settings
         self.build = "ALL" if engine.is_animation else settings.build_on_render
         self.left = 0  # objects and groups without levels
         self.store = store_path.store_folder(getattr(engine, "lodestone_blend", ""))
@@ -158,7 +156,6 @@ class _Run:
         self.plan = state.plan
         if self.plan is not None and self.plan.step == compare_plan.ORIGINALS:
             self.settings = self.settings.of_originals()
-            self.ray_classes = 0
         self.work = Work()
         self.frame = self.scene.frame_current
         self.clock = progress_text.StageClock(self.frame)
@@ -192,7 +189,7 @@ class _Run:
             triangles = progress_text.count(totals.triangles_placed)
             self.clock.tail = f"{triangles} triangles"
             closing = None
-            if levels and self.coarser:
+            if levels and quality_settings.is_coarser_moving_dark(self.scene_settings):
                 closing = self._read_shutter(extraction, model, frame)
                 camera_object = self._required()
             view = scene_camera.extract(camera_object, frame, self.problems)
@@ -229,9 +226,9 @@ class _Run:
     def _modifiers(self, extraction, camera_object, closing):
         objects = self.depsgraph.objects
         detail = quality_lenses.detail(objects, quality_lenses.parts_in(extraction), self.problems)
-        return quality_lenses.modifiers(
-            detail, camera_object, self.coarser, closing, self.off_screen, self.ray_classes
-        )
+        made = quality_lenses.modifiers(self.scene_settings, detail, camera_object, closing)
+        originals = self.plan is not None and self.plan.step == compare_plan.ORIGINALS
+        return replace(made, ray_classes=0) if made is not None and originals else made
 
     def _read_poses(self, still):
         """Once for all frames of an animation. Moves the depsgraph to other frames and back."""

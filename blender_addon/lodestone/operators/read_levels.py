@@ -136,7 +136,7 @@ def _on_change(scene, depsgraph):
     """Cameras and lenses may move: they are those of the moment. Lights may where what is dark is
     as fine as the rest. Everything else makes it out of date."""
     own = SceneSettings(scene)
-    lit = own.use_levels and own.coarser_moving_dark
+    lit = quality_settings.is_coarser_moving_dark(own)
     if any(_counts(update, lit) for update in depsgraph.updates):
         addon_session().kept_models.outdate()
 

@@ -7,7 +7,7 @@ from typing import Any
 from ...core.picture import why_sentences
 from ...core.problems import Problems
 from ...core.session import kept_model
-from .. import datablock_ids, render_result
+from .. import datablock_ids, quality_settings, render_result
 from ...core.session.addon_session import addon_session
 from ..scene import quality_lenses, scene_camera
 from ..scene_settings import SceneSettings
@@ -33,7 +33,7 @@ def now(kept: Any, scene: Any, depsgraph: Any) -> "kept_model.Asked":
 def old(kept: Any, scene: Any) -> bool:
     """Whether the scene is not any more as it was read, or was read without what moves."""
     own, read_with = SceneSettings(scene), kept.view.modifiers
-    moving = own.use_levels and own.coarser_moving_dark
+    moving = quality_settings.is_coarser_moving_dark(own)
     still = read_with is None or not read_with.when_moving
     return kept.outdated or kept.frame != scene.frame_current or (moving and still)
 

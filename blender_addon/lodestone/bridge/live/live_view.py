@@ -115,19 +115,11 @@ def settings_of(
     the camera as the shutter closes, where it is known."""
     own = SceneSettings(scene)
     detail = quality_lenses.detail(rendered_lenses(scene), parts_of, Problems())
-    coarser = own.use_levels and own.coarser_moving_dark
     return Settings(
         pixel_error=quality_settings.pixel_error(own),
         overrides=quality_settings.overrides(own),
         budget=quality_settings.budget(own),
-        modifiers=quality_lenses.modifiers(
-            detail,
-            scene.camera,
-            coarser,
-            closing if coarser else None,
-            off_screen=own.off_screen,
-            ray_classes=quality_settings.ray_classes(own),
-        ),
+        modifiers=quality_lenses.modifiers(own, detail, scene.camera, closing),
     )
 
 

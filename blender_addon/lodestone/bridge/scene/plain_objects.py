@@ -19,20 +19,12 @@ from .. import datablock_ids
 from ..listed_instances import Listed, Rows, gathered
 from ..motion.motion_sampling import Motion
 from .leaf_objects import MATERIAL
+from .ray_visibility import SEEN_BY_ALL
 
 _BATCH = 4096  # objects between two ticks
 _OWN = {"library": None, "animation_data": None, "is_instancer": False}  # what plain objects have
 _FREE = {"parent": None, "rigid_body": None, **_OWN}  # what most of them have: nothing moves them
-_SEEN = {"is_holdout": False, "is_shadow_catcher": False} | dict.fromkeys(
-    (
-        "visible_camera",
-        "visible_glossy",
-        "visible_shadow",
-        "visible_diffuse",
-        "visible_transmission",
-    ),
-    True,
-)  # by all rays
+_SEEN = {"is_holdout": False} | SEEN_BY_ALL
 _DATA, _NAME, _ORIGINAL = attrgetter("data"), attrgetter("name"), attrgetter("original")
 _MODIFIERS, _CONSTRAINTS = attrgetter("modifiers"), attrgetter("constraints")
 _SLOTS, _ACTIVE_MATERIAL = attrgetter("material_slots"), attrgetter("active_material")

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...core.native import lodestone_native as native
 from ...core.problems import WARNING, Problems
-from .. import datablock_ids
+from .. import datablock_ids, quality_settings
 from ..datablock_ids import name_of
 from ..listed_instances import rows
 from . import scene_camera as cameras
@@ -96,19 +96,17 @@ def screen(camera: Any) -> tuple[native.ScreenLens, ...]:
 
 
 def modifiers(
-    lenses: tuple[native.Lens, ...],
-    camera: Any,
-    coarser: bool,
-    closing: Any | None = None,
-    off_screen: str = FULL,
-    ray_classes: int = 0,
+    settings: Any, lenses: tuple[native.Lens, ...], camera: Any, closing: Any | None = None
 ) -> native.Modifiers | None:
-    """All together, of a camera object; None: nothing bends quality. `coarser`: when moving or
-    dark. `closing`: the camera as the shutter closes, None: it rests. `off_screen`: what the
-    picture does not show, by native.OffScreen's names; `ray_classes`: of native.Rays."""
+    """All that bends the quality of a picture: SceneSettings, the scene's detail lenses and what a
+    camera object has; None: nothing does. `closing`: the camera as the shutter closes, None: it
+    rests."""
     screen_lenses = screen(camera)
-    settings = datablock_ids.settings_of(camera.data)
-    depth = 1.0 if settings is None else settings.depth_exaggeration
+    own = datablock_ids.settings_of(camera.data)
+    depth = 1.0 if own is None else own.depth_exaggeration
+    coarser = quality_settings.is_coarser_moving_dark(settings)
+    ray_classes = quality_settings.ray_classes(settings)
+    off_screen = settings.off_screen
     if not (
         lenses or screen_lenses or depth != 1.0 or coarser or off_screen != FULL or ray_classes
     ):
@@ -120,7 +118,7 @@ def modifiers(
         depth_focus=cameras.focus_distance(camera) if depth != 1.0 else 10.0,
         when_moving=coarser,
         when_dark=coarser,
-        closing=closing,
+        closing=closing if coarser else None,
         off_screen=native.OffScreen[off_screen],
         ray_classes=ray_classes,
     )

@@ -3,6 +3,7 @@
 POV-Ray can do it."""
 
 from collections.abc import Iterator
+from operator import attrgetter
 from typing import Any
 
 from ...core.native import lodestone_native as native
@@ -16,6 +17,14 @@ _SWITCHES = (  # Blender's names, the ray class of ours
     ("visible_shadow", RayClass.SHADOW),
     ("visible_diffuse", RayClass.RADIOSITY),
 )
+# What nearly all objects have: all rays see them
+SEEN_BY_ALL = {
+    **dict.fromkeys((name for name, _ in _SWITCHES), True),
+    "visible_transmission": True,
+    "is_shadow_catcher": False,
+}
+_SEEN = attrgetter(*SEEN_BY_ALL)
+_SEEN_VALUES = tuple(SEEN_BY_ALL.values())
 
 
 class Visibility:
@@ -78,14 +87,7 @@ class Visibility:
 def _plain(item: Any) -> bool:
     """Seen by all rays, as nearly everything is: asked for every object."""
     try:
-        return (
-            item.visible_camera
-            and item.visible_glossy
-            and item.visible_shadow
-            and item.visible_diffuse
-            and item.visible_transmission
-            and not item.is_shadow_catcher
-        )
+        return bool(_SEEN(item) == _SEEN_VALUES)
     except AttributeError:  # a Blender that lacks one of them
         return False
 

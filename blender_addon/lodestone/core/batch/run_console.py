@@ -9,6 +9,7 @@ from .. import progress_text
 from ..printable_text import printable
 from ..problems import Problem
 from .report_rows import Row
+from .verbs import verb_of
 
 
 class Console:
@@ -50,9 +51,8 @@ class Console:
         if "message" in report:
             text = f"batch.py: {printable(report['input'])}: {printable(report['message'])}"
             self.line(text, error=True)
-        for picture in report.get("pictures", [report]):
-            if picture.get("picture"):
-                self.line(printable(picture["picture"]))
+        for line in verb_of(report["verb"]).lines(report):
+            self.line(printable(line))
         compared = Row.of(report).compared
         if compared and self._total == 1:  # the table tells it where there are several
             self.line(compared.sentence)

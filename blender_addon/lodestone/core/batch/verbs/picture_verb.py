@@ -63,6 +63,9 @@ class PictureVerb(Verb):
         found = map(result_of, made.get("pictures", [made]))
         return [path for path in found if path]
 
+    def lines(self, report: dict[str, Any]) -> list[str]:
+        return self.results(report)
+
     def check_output(self, out: str) -> None:
         folder = self.folder_of(Path(out))
         try:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A verb of batch.py: its options, the job it makes of a file, and its part of the run.
 
-The methods down to results() are called outside Blender, those after it inside.
+The methods down to lines() are called outside Blender, those after it inside.
 """
 
 import argparse
@@ -10,6 +10,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, TypeVar
 
+from ... import run_report
 from ...file_names import folder_name
 from ...picture.compare_pictures import Compared
 from ...picture.cost_model import StoreCosts
@@ -84,6 +85,10 @@ class Verb:
         """The paths of what a report says was made."""
         raise NotImplementedError
 
+    def lines(self, report: dict[str, Any]) -> list[str]:
+        """What is printed of a finished file, by its report."""
+        return []
+
     def check_output(self, out: str) -> None:
         """Makes the folder of a result. Raises Failed when it cannot be written there."""
 
@@ -94,6 +99,11 @@ class Verb:
         """Whether missing and changed levels are built before the pictures."""
         return any(request.levels for request in requests)
 
+    def about(self, model: Any) -> dict[str, Any]:
+        """What it tells of a scene that was read, before anything is made: parts of the report."""
+        return {"model": run_report.model_part(model.totals())}
+
     def make(self, work: PictureWork) -> dict[str, Any]:
-        """Makes one picture or scene; returns its part of the report."""
+        """Makes one picture or scene of those that were asked for; returns its part of the
+        report."""
         raise NotImplementedError
