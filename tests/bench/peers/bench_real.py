@@ -1,0 +1,334 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scenes that nobody tuned to, beside Cycles: what a picture takes, and how far it is from Cycles'.
+
+    /usr/bin/python3 tests/bench/peers/bench_real.py [--views zengarden/near ...] [--resume]
+        [--pixel-errors 0 1 4] [--size 320 180] [--cache FOLDER] [--write]
+
+A view is SCENE/near, SCENE/far or SCENE/over. Scenes are tracks of SuperTuxKart (the Debian package
+supertuxkart-data, fetched into the cache, and LODESTONE_TOOLS/stk_scenes), files of LODESTONE_DATA
+(scene cameras, so near alone) and three nights made here. Scenes, and the pictures of Cycles with
+256 samples, are kept in the cache (LODESTONE_BENCH_CACHE, default ~/.cache/lodestone-bench).
+
+Seconds are CPU of the whole process, without what opening the file takes. Levels are built before
+(the column says at which price). Differences are the mean over covered pixels of the absolute
+difference of displayed values, 0...1, to Cycles with 256 samples and the same diffuse bounces, by
+which Cycles with 16 samples is judged, too; brightness is the ratio of the means. SSIM is that to
+our own full detail with 16 samples in every pixel. What is missing is skipped with a sentence; no
+number makes it fail.
+"""
+
+import argparse
+import json
+import math
+import os
+import resource
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import benching  # noqa: E402
+
+ROOT = benching.ROOT
+STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
+ADDON = STAGE / "addons" / "lodestone"
+TOOLS = Path(os.environ.get("LODESTONE_TOOLS") or ROOT.parent / "shared" / "tools")
+DATA = Path(os.environ.get("LODESTONE_DATA") or ROOT.parent / "shared" / "data")
+CACHE = Path(os.environ.get("LODESTONE_BENCH_CACHE") or Path.home() / ".cache" / "lodestone-bench")
+INSIDE = Path(__file__).with_name("bench_real_blender.py")
+GAME = Path("usr/share/games/supertuxkart/data")
+TRACKS = (
+    "black_forest", "cocoa_temple", "hacienda", "lighthouse", "minigolf", "ravenbridge_mansion",
+    "snowmountain", "stk_enterprise", "zengarden",
+)  # fmt: skip
+NIGHTS = ("night_street", "night_tree", "night_hotel")
+CAMERAS = {"near": "CamNear", "far": "CamFar", "over": "CamOver"}
+DEFAULT = (
+    "zengarden/near", "ravenbridge_mansion/near", "black_forest/far", "cocoa_temple/near",
+    "snowmountain/over", "night_tree/near",
+)  # fmt: skip
+SAMPLES, CONVERGED = 16, 256
+TIMEOUT = 3600
+
+
+class Missing(Exception):
+    """What a view needs is not there; says what."""
+
+
+def cpu_of(command: list, log: Path, environment: dict | None = None) -> float:
+    """CPU seconds of a command and all that it started and waited for. Raises Missing."""
+
+    def used() -> float:
+        one = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return one.ru_utime + one.ru_stime
+
+    before = used()
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with open(log, "wb") as out:
+        done = subprocess.run(
+            list(map(str, command)), stdin=subprocess.DEVNULL, stdout=out,
+            stderr=subprocess.STDOUT, env={**os.environ, **(environment or {})},
+            timeout=TIMEOUT, check=False,
+        )  # fmt: skip
+    if done.returncode not in (0, 3):  # 3: incomplete, and named in the report
+        raise Missing(f"{Path(str(command[0])).name} failed: {log}")
+    return used() - before
+
+
+class Scenes:
+    """The .blend files of scenes, made once."""
+
+    def __init__(self, cache: Path) -> None:
+        self.cache = cache
+
+    def blend(self, name: str) -> Path:
+        """The file of a scene. Raises Missing."""
+        path = self.cache / "scenes" / name / f"{name}.blend"
+        if not path.is_file():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if name in TRACKS:
+                self._track(name, path)
+            elif name in NIGHTS:
+                inside = ["blender", "-b", "--factory-startup", "--python-exit-code", "1"]
+                inside += ["--python", INSIDE, "--", "night", name, path]
+                cpu_of(inside, path.with_suffix(".log"))
+            else:
+                self._of_data()
+        if not path.is_file():
+            raise Missing(f"there is no scene {name}")
+        return path
+
+    def _track(self, name: str, path: Path) -> None:
+        maker = TOOLS / "stk_scenes" / "stk_scenes.py"
+        if not maker.is_file():
+            raise Missing(f"there is no {maker}")
+        command = ["blender", "-b", "--python-exit-code", "1", "-P", maker, "--"]
+        cpu_of([*command, self._game(), name, path], path.with_suffix(".log"))
+
+    def _game(self) -> Path:
+        """The game's data, unpacked from Debian's package; nothing is installed."""
+        folder = self.cache / "supertuxkart"
+        if not (folder / GAME / "tracks").is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            get = ["apt-get", "download", "supertuxkart-data"]
+            if subprocess.run(get, cwd=folder, capture_output=True, check=False).returncode != 0:
+                raise Missing("apt-get download supertuxkart-data failed")
+            for package in folder.glob("*.deb"):
+                subprocess.run(["dpkg", "-x", package, folder], check=True)
+                package.unlink()
+        return folder / GAME
+
+    def _of_data(self) -> None:
+        """The .blend files of the shared scenes, as samples/real_scenes.py makes them."""
+        out = self.cache / "data"
+        command = ["/usr/bin/python3", ROOT / "samples" / "real_scenes.py", "--prepare-only"]
+        cpu_of([*command, "--data", DATA, "--out", out], out / "prepare.log")
+        for blend in out.glob("*.blend"):
+            folder = self.cache / "scenes" / blend.stem
+            folder.mkdir(parents=True, exist_ok=True)
+            shutil.move(blend, folder / blend.name)
+
+
+class View:
+    """One view of one scene: its pictures, and what they took."""
+
+    def __init__(self, name: str, scenes: Scenes, options: argparse.Namespace) -> None:
+        self.name, self.options = name, options
+        scene, _, camera = name.partition("/")
+        self.blend = scenes.blend(scene)
+        self.camera = CAMERAS[camera or "near"] if scene in (*TRACKS, *NIGHTS) else ""
+        size = "x".join(map(str, options.size))
+        self.kept = scenes.cache / "cycles" / scene / f"{camera or 'near'}_{size}"
+        self.out = options.out / scene / (camera or "near")
+        self.kept.mkdir(parents=True, exist_ok=True)
+        self.out.mkdir(parents=True, exist_ok=True)
+
+    def opening(self) -> float:
+        """What opening the file takes, Blender's start included."""
+        command = ["blender", "-b", "--factory-startup", self.blend, "--python-expr", "pass"]
+        return cpu_of(command, self.out / "open.log")
+
+    def cycles(self, samples: int, transparent: bool = False) -> tuple[Path, float]:
+        """A picture by Cycles and the CPU of its process; kept, for it depends on nothing here."""
+        kind = "mask" if transparent else "picture"
+        picture = self.kept / f"cycles_{kind}_{samples}.png"
+        told = picture.with_suffix(".json")
+        if not (picture.is_file() and told.is_file()):
+            job = {
+                "camera": self.camera, "size": self.options.size, "out": str(picture),
+                "samples": samples, "bounces": 0, "transparent": transparent,
+            }  # fmt: skip
+            asked = picture.with_suffix(".job")
+            asked.write_text(json.dumps(job), "utf-8")
+            command = ["blender", "-b", "--factory-startup", self.blend]
+            command += ["--python-exit-code", "1", "--python", INSIDE, "--", "cycles", asked]
+            cpu = cpu_of(command, picture.with_suffix(".log"))
+            told.write_text(json.dumps({"cpu_s": cpu}), "utf-8")
+        return picture, json.loads(told.read_text("utf-8"))["cpu_s"]
+
+    def batch(self, verb: str, name: str, *more: str) -> tuple[dict, float]:
+        """The report of batch.py and the CPU of all its processes."""
+        report = self.out / f"{name}.json"
+        command = ["/usr/bin/python3", ADDON / "batch.py", verb, self.blend, "--json", report]
+        command += ["--store", self.options.out / self.name.partition("/")[0] / "store", *more]
+        cpu = cpu_of(command, self.out / f"{name}.log")
+        return json.loads(report.read_text("utf-8")), cpu
+
+    def drawn(self, name: str, pixel_error: float, *more: str) -> tuple[Path, dict, float]:
+        picture = self.out / f"{name}.png"
+        words = ["--out", picture, "--pixel-error", pixel_error, *more]
+        words += ["--size", "x".join(map(str, self.options.size))]
+        if self.camera:
+            words += ["--camera", self.camera]
+        return (picture, *self.batch("render", name, *map(str, words)))
+
+    def measure(self) -> dict:
+        """All numbers of the view."""
+        opening = self.opening()
+        mask, _ = self.cycles(4, transparent=True)
+        converged, _ = self.cycles(CONVERGED)
+        noisy, took = self.cycles(SAMPLES)
+        covered = pixels(mask)[:, :, 3] >= 0.5
+        found = {
+            "opening_s": opening,
+            "cycles_s": took - opening,
+            "cycles": compared(noisy, converged, covered),
+            "ours": {},
+        }
+        build, cpu = self.batch("build", "build")
+        found["build_s"] = build.get("build", {}).get("cpu_s", 0.0)
+        reference, _, _ = self.drawn("reference", 0, "--antialias", "reference")
+        for error in self.options.pixel_errors:
+            picture, report, cpu = self.drawn(f"{error:g}px", error)
+            found["ours"][f"{error:g}"] = {
+                "cpu_s": cpu - opening,
+                "reading_s": report["extract"]["cpu_s"],
+                "export_s": report["export"]["cpu_s"],
+                "parse_s": report["povray"]["parse_cpu_s"],
+                "trace_s": report["povray"]["trace_cpu_s"],
+                "memory_bytes": max(0, report["povray"]["peak_bytes"] - self.options.empty),
+                "triangles": report["cut"]["triangles"],
+                "ssim": self.options.native.image_compare(
+                    str(reference), str(picture), str(mask)
+                ).ssim,
+                **compared(picture, converged, covered),
+            }
+        return found
+
+
+def pixels(path: Path) -> numpy.ndarray:
+    """Displayed values, [rows][columns][4], 0...1."""
+    from PIL import Image
+
+    return numpy.asarray(Image.open(path).convert("RGBA"), dtype=float) / 255
+
+
+def compared(picture: Path, reference: Path, covered: numpy.ndarray) -> dict[str, float]:
+    """Mean absolute difference and ratio of brightness over covered pixels."""
+    ours, theirs = (pixels(path)[covered][:, :3] for path in (picture, reference))
+    return {
+        "difference": float(numpy.abs(ours - theirs).mean()),
+        "brightness": float(ours.mean() / max(theirs.mean(), 1e-6)),
+    }
+
+
+def mean_ratio(ratios: Iterable[float]) -> float:
+    """The geometric mean; 0 of nothing."""
+    logs = [math.log(max(ratio, 1e-9)) for ratio in ratios]
+    return math.exp(sum(logs) / len(logs)) if logs else 0.0
+
+
+def table(found: dict[str, dict]) -> list[str]:
+    """The rows of all views, and the goals below."""
+    lines = [
+        "| view | Pixel Error | CPU s | over Cycles | reading + export + parse + trace | memory MB "
+        "| triangles | difference | Cycles' own | brightness | SSIM | levels built in |",
+        "|---|---|---|---|---|---|---|---|---|---|---|---|",
+    ]
+    for name, view in found.items():
+        for error, one in view["ours"].items():
+            parts = " + ".join(
+                f"{one[part + '_s']:.1f}" for part in ("reading", "export", "parse", "trace")
+            )
+            lines.append(
+                f"| {name} | {error} | {one['cpu_s']:.1f} "
+                f"| {one['cpu_s'] / max(view['cycles_s'], 1e-3):.2f} | {parts} "
+                f"| {one['memory_bytes'] / 1e6:.0f} | {one['triangles']:,} "
+                f"| {one['difference']:.3f} | {view['cycles']['difference']:.3f} "
+                f"| {one['brightness']:.2f} | {one['ssim']:.3f} | {view['build_s']:.1f} |"
+            )
+    at_one = [view for view in found.values() if "1" in view["ours"]]
+    if at_one:
+        times = [view["ours"]["1"]["cpu_s"] / max(view["cycles_s"], 1e-3) for view in at_one]
+        off = [
+            view["ours"]["1"]["difference"] / max(view["cycles"]["difference"], 1e-3)
+            for view in at_one
+        ]
+        lines += [
+            "",
+            f"At 1 px, {len(at_one)} views: CPU over that of Cycles with {SAMPLES} samples "
+            f"{mean_ratio(times):.2f} in the geometric mean (goal: <= 1, aim 0.5), at most "
+            f"{max(times):.2f} (goal: <= 2); difference over Cycles' own {mean_ratio(off):.2f} "
+            "(goal: <= 1.5).",
+        ]
+    return lines
+
+
+def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--views", nargs="+", default=list(DEFAULT), metavar="SCENE/CAMERA")
+    parser.add_argument("--pixel-errors", nargs="+", type=float, default=[0.0, 1.0, 4.0])
+    parser.add_argument("--size", nargs=2, type=int, default=[320, 180], metavar=("W", "H"))
+    parser.add_argument("--cache", type=Path, default=CACHE)
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "bench" / "real")
+    parser.add_argument("--resume", action="store_true", help="keep views that were measured")
+    benching.add_write(parser, "povray_export")
+    options = parser.parse_args(arguments)
+    for view in options.views:
+        if view.partition("/")[2] not in ("", *CAMERAS):
+            parser.error(f"--views {view}: SCENE/near, SCENE/far or SCENE/over")
+    options.cache, options.out = options.cache.resolve(), options.out.resolve()
+    return options
+
+
+def main() -> None:
+    options = options_of()
+    if not ADDON.is_dir():
+        sys.exit("bench_real.py: build first (cmake --build --preset release)")
+    sys.path.insert(0, str(ADDON))
+    import lodestone_native as native
+
+    options.native, options.empty = native, native.povray_empty_bytes(*options.size)
+    options.out.mkdir(parents=True, exist_ok=True)
+    known = options.out / "views.json"
+    found: dict[str, dict] = {}
+    if options.resume and known.is_file():
+        found = json.loads(known.read_text("utf-8"))
+    busy = benching.load()
+    scenes = Scenes(options.cache)
+    for name in options.views:
+        if name in found:
+            continue
+        try:
+            found[name] = View(name, scenes, options).measure()
+        except Missing as error:
+            print(f"bench_real.py: {name} is skipped: {error}", file=sys.stderr)
+            continue
+        known.write_text(json.dumps(found, indent=1), "utf-8")
+        print(table({name: found[name]})[2], flush=True)
+    shown = {name: found[name] for name in options.views if name in found}
+    told = benching.Told()
+    told.tell(f"{options.size[0]} x {options.size[1]}, Cycles with {SAMPLES} samples.\n")
+    told.tell("\n".join(table(shown)))
+    page = benching.results_path(options, "real_light")
+    benching.write_results(
+        page, "Real scenes beside Cycles", told, {"load_before": busy, "views": shown}
+    )
+
+
+if __name__ == "__main__":
+    main()

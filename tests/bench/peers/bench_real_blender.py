@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The half of bench_real.py inside Blender: a picture of the open file by Cycles, or one of the
+night scenes as a file.
+
+blender -b --factory-startup FILE --python THIS -- cycles JOB.json
+blender -b --factory-startup --python THIS -- night NAME OUT.blend
+
+JOB: `camera`, `size`, `out` (PNG), `samples`, `bounces` (of diffuse light), `transparent`.
+"""
+
+import json
+import sys
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.scenes import night_scenes  # noqa: E402
+
+
+def cycles(job: dict) -> None:
+    scene = bpy.context.scene
+    if job["camera"]:
+        scene.camera = scene.objects[job["camera"]]
+    scene.render.engine = "CYCLES"
+    scene.cycles.device = "CPU"
+    scene.cycles.samples = job["samples"]
+    scene.cycles.seed = 0
+    scene.cycles.use_denoising = False
+    scene.cycles.use_adaptive_sampling = False
+    scene.cycles.diffuse_bounces = job["bounces"]
+    scene.render.film_transparent = job["transparent"]
+    scene.render.resolution_x, scene.render.resolution_y = job["size"]
+    scene.render.resolution_percentage = 100
+    scene.render.filepath = job["out"]
+    image = scene.render.image_settings
+    image.file_format, image.color_mode, image.color_depth = "PNG", "RGBA", "8"
+    bpy.ops.render.render(write_still=True)
+
+
+def main() -> None:
+    verb, *words = sys.argv[sys.argv.index("--") + 1 :]
+    if verb == "cycles":
+        cycles(json.loads(Path(words[0]).read_text("utf-8")))
+    else:
+        name, out = words
+        night_scenes.SCENES[name]()
+        bpy.ops.wm.save_as_mainfile(filepath=out)
+
+
+main()
