@@ -56,6 +56,19 @@ GatheringQuality gathering_of(Antialiasing antialiasing) {
     return {800, 0.4};
 }
 
+/// The distance between the samples of a pixel, in pixels. No image texture can show more.
+double sample_spacing(Antialiasing antialiasing, int depth) {
+    switch (antialiasing) {
+        case Antialiasing::Off:
+            return 1;
+        case Antialiasing::Final:
+            return 1.0 / depth;
+        case Antialiasing::Reference:
+            break;
+    }
+    return 0.25;
+}
+
 /// The number of samples, made 2^n + 1, for POV-Ray refines by halving.
 int halving(int samples) {
     if (samples <= 1)
@@ -75,6 +88,7 @@ Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixe
     out.area_samples = halving(shading.area_samples > 0 ? shading.area_samples : usual);
     out.sky_lights = shading.sky_lights == 0 ? sky_lights_of(antialiasing)
                                              : std::clamp(shading.sky_lights, 0, kMostSkyLights);
+    out.texture_error = std::max(shading.texture_error, sample_spacing(antialiasing, out.depth));
     out.shadow_error = shading.shadow_error > 0 ? shading.shadow_error : pixel_error;
     const GatheringQuality gathering = gathering_of(antialiasing);
     out.bounces = std::clamp(shading.bounces, 0, kMostHandings);

@@ -16,7 +16,7 @@ struct Shading {
     int sky_lights = 0;           // lights that stand for an environment image; below 0: none
     double shadow_error = 0;      // pixels; narrower penumbrae are sharp. 0: the Pixel Error
     double reflection_error = 0;  // 255ths; rays that add less are not followed. 0: 1
-    double texture_error = 0;     // pixels; what a picture may be blurred by. 0: nothing
+    double texture_error = 0;     // pixels; what a picture may be blurred by. 0: what samples miss
     int bounces = 0;              // bounces of light from surface to surface; 0: direct light only
     int bounce_rays = 0;          // rays by which light of other surfaces is gathered
     double bounce_error = 0;      // how far gathered light is used again, 0 ... 1

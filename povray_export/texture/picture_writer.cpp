@@ -133,7 +133,7 @@ std::string baked(const Texture& texture, PigmentContent content, int halvings) 
                 to.pixels[i] = encode_srgb(to.pixels[i]);
         }
     }
-    return image::png_bytes(to);
+    return image::png_bytes(to, image::PngEffort::Quick);
 }
 
 /// Whether anything outside the picture is looked at.

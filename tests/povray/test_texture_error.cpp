@@ -60,8 +60,22 @@ Texture texture_of(const PicturePtr& picture) {
 
 }  // namespace
 
-TEST(PovrayTextureError, NothingAskedLeavesThePictureAsItIs) {
-    EXPECT_EQ(written(texture_of(stripes()), square(), 0, 100), kSide);
+TEST(PovrayTextureError, NothingAskedKeepsWhatSamplesShow) {
+    // One metre on 64 pixels: 256 texels are 4 a pixel, where 3 samples show a third of a pixel.
+    EXPECT_EQ(written(texture_of(stripes()), square(), 0, 1), kSide);
+    EXPECT_LE(written(texture_of(stripes()), square(), 0, 8), kSide / 4);
+    EXPECT_GE(written(texture_of(stripes()), square(), 0, 8), 3 * 64 / 8);
+}
+
+TEST(PovrayTextureError, FewerSamplesShowLessOfAPicture) {
+    Shading shading;
+    EXPECT_DOUBLE_EQ(filled_up(shading, Antialiasing::Off, 0).texture_error, 1);
+    EXPECT_DOUBLE_EQ(filled_up(shading, Antialiasing::Final, 0).texture_error, 1.0 / 3);
+    EXPECT_DOUBLE_EQ(filled_up(shading, Antialiasing::Reference, 0).texture_error, 0.25);
+    shading.depth = 2;
+    EXPECT_DOUBLE_EQ(filled_up(shading, Antialiasing::Final, 0).texture_error, 0.5);
+    shading.texture_error = 4;
+    EXPECT_DOUBLE_EQ(filled_up(shading, Antialiasing::Reference, 0).texture_error, 4);
 }
 
 TEST(PovrayTextureError, ATexelCoversNoMorePixelsThanAsked) {

@@ -1126,7 +1126,8 @@ typedef struct lds_povray_options {
                              stand for several; 0: every lamp lights everything; negative (usual):
                              the view's. On average a point is off by about as many 255ths */
     double reflection_error; /* 255ths: rays that add less are not followed; usual 1 */
-    double texture_error;    /* pixels that image textures may be blurred by; usual 0 */
+    double texture_error;    /* pixels that image textures may be blurred by; usual 0: as fine as
+                                the samples of pixels show */
     int32_t bounces;         /* bounces of indirect light, up to 8; usual 0: direct light only */
     int32_t bounce_rays;     /* rays that gather indirect light; usual 200, OFF 60, REFERENCE 800 */
     double bounce_error;     /* 0...1: how far gathered light is interpolated; usual 0.6, with OFF

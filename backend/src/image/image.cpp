@@ -73,7 +73,7 @@ Image encoded(const Image& image) {
     return out;
 }
 
-std::string png_bytes(const Image& image) {
+std::string png_bytes(const Image& image, PngEffort effort) {
     if (image.width < 1 || image.height < 1 || image.size() > kMostPixels ||
         image.pixels.size() != 4 * image.size())
         fail(Status::InvalidArgument, "an image of ", image.width, " x ", image.height, " with ",
@@ -89,7 +89,7 @@ std::string png_bytes(const Image& image) {
         for (int channel = 0; channel < channels; ++channel)
             rows.push_back(byte_of(display.pixels[i + static_cast<size_t>(channel)]));
     }
-    return encode_png(rows, image.width, image.height, channels);
+    return encode_png(rows, image.width, image.height, channels, effort);
 }
 
 void write_png(const std::filesystem::path& path, const Image& image) {

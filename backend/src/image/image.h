@@ -47,8 +47,13 @@ Image read_region(const std::filesystem::path& path, const ImageRegion& part);
 /// Writes 8 bits a channel, RGB when every alpha is 1, else RGBA; a linear image is encoded first.
 /// The file is written whole or not at all.
 void write_png(const std::filesystem::path& path, const Image& image);
+/// What is spared in a PNG file.
+enum class PngEffort : uint8_t {
+    Small,  // bytes: for files that are kept
+    Quick,  // time: a quarter of it for a file a fifth larger, which one picture reads
+};
 /// The bytes of such a PNG file. Throws Error(InvalidArgument).
-std::string png_bytes(const Image& image);
+std::string png_bytes(const Image& image, PngEffort effort = PngEffort::Small);
 
 /// The image for a display: linear with associated alpha becomes sRGB with straight alpha, clamped
 /// to 0...1 (not a number: 0); another image stays as it is.

@@ -119,7 +119,8 @@ struct PngWriter {
     PngWriter& operator=(const PngWriter&) = delete;
 };
 
-bool write_rows(PngWriter& writer, png_bytepp rows, int width, int height, int channels) {
+bool write_rows(PngWriter& writer, png_bytepp rows, int width, int height, int channels,
+                PngEffort effort) {
     if (setjmp(png_jmpbuf(writer.png)) != 0)  // NOLINT(cert-err52-cpp)
         return false;
     png_set_write_fn(writer.png, &writer.bytes, on_write, on_flush);
@@ -129,6 +130,10 @@ bool write_rows(PngWriter& writer, png_bytepp rows, int width, int height, int c
                  channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (effort == PngEffort::Quick) {
+        png_set_compression_level(writer.png, 1);
+        png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+    }
     png_write_info(writer.png, writer.info);
     png_write_image(writer.png, rows);
     png_write_end(writer.png, writer.info);
@@ -166,14 +171,14 @@ Image decode_png(std::string_view bytes, const std::string& name) {
     return image;
 }
 
-std::string encode_png(const std::vector<unsigned char>& rows, int width, int height,
-                       int channels) {
+std::string encode_png(const std::vector<unsigned char>& rows, int width, int height, int channels,
+                       PngEffort effort) {
     PngWriter writer;
     std::vector<unsigned char> data = rows;  // libpng wants rows it could write to
     std::vector<png_bytep> starts(static_cast<size_t>(height));
     for (size_t y = 0; y < starts.size(); ++y)
         starts[y] = data.data() + y * static_cast<size_t>(width) * static_cast<size_t>(channels);
-    if (!write_rows(writer, starts.data(), width, height, channels))
+    if (!write_rows(writer, starts.data(), width, height, channels, effort))
         fail(Status::Internal, "a PNG could not be made: ", writer.complaint.text);
     return std::move(writer.bytes);
 }

@@ -7,6 +7,7 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <unordered_map>
@@ -88,6 +89,22 @@ PictureFacts facts_of(const Picture& picture) {
     return facts;
 }
 
+/// decode_srgb(), whose values for 8 bits, which nearly all pictures have, are looked up.
+float decode_srgb_texel(float encoded) {
+    static const std::array<float, 256> kOfByte = [] {
+        std::array<float, 256> out{};
+        for (size_t i = 0; i < out.size(); ++i)
+            out[i] = decode_srgb(static_cast<float>(i) / 255.0f);
+        return out;
+    }();
+    if (encoded >= 0 && encoded <= 1) {
+        const auto byte = static_cast<size_t>(encoded * 255.0f + 0.5f);
+        if (static_cast<float>(byte) / 255.0f == encoded)
+            return kOfByte[byte];
+    }
+    return decode_srgb(encoded);
+}
+
 }  // namespace
 
 Image decoded(const Picture& picture) {
@@ -103,7 +120,7 @@ Image decoded(const Picture& picture) {
     } else if (picture.space == ColorSpace::Srgb) {
         for (size_t i = 0; i < image.pixels.size(); i += 4) {
             for (size_t c = 0; c < 3; ++c)
-                image.pixels[i + c] = decode_srgb(image.pixels[i + c]);
+                image.pixels[i + c] = decode_srgb_texel(image.pixels[i + c]);
         }
     }
     image.linear = true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards texture look-ups: which texel, which channel, in which light, outside the picture too.
+#include "base/color.h"
 #include "base/error.h"
 #include "image/texture_sampler.h"
 
@@ -33,6 +34,26 @@ TEST(TextureSampler, WithoutAPictureGivesTheOtherValue) {
     const image::TextureSampler sampler(Texture{}, {0.1, 0.2, 0.3});
     expect_color(sampler.color({0.5, 0.5}), {0.1, 0.2, 0.3});
     EXPECT_EQ(sampler.number({7, -3}), 0.1);
+}
+
+TEST(TextureSampler, EveryByteIsDecodedAsTheFormulaSays) {
+    image::Image image;
+    image.width = 256;
+    image.height = 1;
+    for (int i = 0; i < 256; ++i)
+        image.pixels.insert(image.pixels.end(), {static_cast<float>(i) / 255.0f, 0, 0, 1});
+    const PicturePtr picture =
+        image::make_picture(image::png_bytes(image), ColorSpace::Srgb, "all bytes");
+    const image::Image found = image::decoded(*picture);
+    for (size_t i = 0; i < 256; ++i)
+        EXPECT_EQ(found.pixels[4 * i], decode_srgb(static_cast<float>(i) / 255.0f)) << i;
+}
+
+TEST(TextureSampler, AQuickPngShowsTheSame) {
+    const PicturePtr small = four_texels();
+    const std::string quick =
+        image::png_bytes(image::read(small->bytes, "four"), image::PngEffort::Quick);
+    EXPECT_EQ(image::read(quick, "four").pixels, image::read(small->bytes, "four").pixels);
 }
 
 TEST(TextureSampler, VZeroIsTheLowestRow) {

@@ -46,7 +46,7 @@ def _same(error: float) -> float:
 
 
 def _textures(error: float) -> float:
-    """Up to a pixel they stay as they are: making them smaller takes longer than they cost."""
+    """Up to a pixel nothing that the picture's samples show is blurred."""
     return error if error > 1.0 else 0.0
 
 
@@ -97,7 +97,7 @@ CONTROLS = (
     Control(
         "textures", "Textures", ROOT, _textures, "px", 0.0, MOST_PIXELS,
         "How much image textures may be blurred on the picture, in pixels: larger ones than that "
-        "needs are made smaller. 0 keeps them as they are",
+        "needs are made smaller. 0: by nothing that its samples could show",
     ),
     Control(
         "shadows", "Shadows", ROOT, _same, "px", 0.0, MOST_PIXELS,
