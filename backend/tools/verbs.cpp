@@ -114,7 +114,7 @@ const std::vector<CommandVerb>& verbs() {
           {"angle-deg", "A", "horizontal field of view (default 50)"},
           {"antialias", "HOW", "off, final (default) or reference"},
           {"light-error", "PX",
-           "the same for lights alone (default: as pixel-error; 0 = all of them)"},
+           "the same for lights alone (default: as pixel-error; 0 = all lamps as they are)"},
           {"bounces", "N", "of light from surface to surface (default 0: direct light only)"},
           {"false-color", "", "paint by kind and level of detail"},
           {"scene", "DIR", "keep the files for POV-Ray in this folder"},

@@ -42,8 +42,9 @@ struct RayGrid {
 class LightWriter {
 public:
     LightWriter(std::string& out, const Light& light, const LightSampling& sampling)
-        : out_(out), light_(light), soft_(sampling.rays > 1 && light.shadow) {
-        rays_ = sampling.rays;
+        : out_(out), light_(light), grid_(sampling.grid), rays_(sampling.rays) {
+        soft_ = sampling.rays > 1 && light.shadow && (!grid_ || grid_->rays > 1);
+        parts_ = !grid_ || grid_->parts;
         start_ = sampling.thorough ? 1 : 0;
         while (most_ < kMostRays && most_ < sampling.steps)
             most_ = 2 * most_ - 1;
@@ -87,7 +88,8 @@ public:
     void spot(const glm::dvec3& color) {
         const bool soft = soft_ && light_.radius > kNear;
         // Parts of a disk that is drawn in parts lack the cosine at the disk: r / 2 stands for it.
-        fading(light_.position, color / (4 * kPi * kPi), soft ? light_.radius / 2 : light_.radius);
+        fading(light_.position, color / (4 * kPi * kPi),
+               soft && parts_ ? light_.radius / 2 : light_.radius);
         const double outer = std::min(light_.spot_size / 2, kPi / 2);
         const double inner =
             std::acos(std::min(1.0, std::cos(outer) + (1 - std::cos(outer)) *
@@ -95,7 +97,8 @@ public:
         append_cone(inner, outer, 1);
         if (soft) {  // each part has its own cone, as in Cycles
             append_ball({9, 9, start_ + 1});
-            out_ += " area_illumination on";
+            if (parts_)
+                out_ += " area_illumination on";
         }
         close();
     }
@@ -106,7 +109,7 @@ public:
         const double size = width * height * (light_.round ? kPi / 4 : 1);
         double fade = 0;
         const bool soft = soft_ && std::max(width, height) > kNear;
-        if (!soft)  // a disk of this size on its axis
+        if (!soft || !parts_)  // a disk of this size on its axis
             fade = std::sqrt(size / kPi);
         const SpotCone cone = spread_cone();
         fading(light_.position, color * (cone.strength / (4 * kPi)), fade);
@@ -121,7 +124,10 @@ public:
                 shorter = ratio > 12 ? 3 : 5;
             }
             append_grid(light_.edge_u, light_.edge_v, grid);
-            out_ += light_.round ? " circular area_illumination on" : " area_illumination on";
+            if (light_.round)
+                out_ += " circular";
+            if (parts_)
+                out_ += " area_illumination on";
         }
         close();
     }
@@ -168,8 +174,14 @@ private:
     /// Appends the grid. POV-Ray puts its outermost rays on the edges, but the middles of n equal
     /// parts are wanted.
     void append_grid(const glm::dvec3& u, const glm::dvec3& v, RayGrid grid) {
-        grid.u = std::min(rays_of(grid.u), most_);
-        grid.v = std::min(rays_of(grid.v), most_);
+        if (grid_) {
+            const int shorter = light::shorter_edge(light_, grid_->rays);
+            grid.u = glm::length(u) < glm::length(v) ? shorter : grid_->rays;
+            grid.v = glm::length(u) < glm::length(v) ? grid_->rays : shorter;
+        } else {
+            grid.u = std::min(rays_of(grid.u), most_);
+            grid.v = std::min(rays_of(grid.v), most_);
+        }
         while (grid.start > 0 && (1 << grid.start) >= std::min(grid.u, grid.v))
             --grid.start;
         out_ += " area_light ";
@@ -235,7 +247,9 @@ private:
 
     std::string& out_;
     const Light& light_;
-    bool soft_;
+    std::optional<light::LampGrid> grid_;
+    bool soft_ = true;
+    bool parts_ = true;  // each part of a lamp lights by itself
     int rays_ = 17;
     int most_ = 3;  // rays along an edge
     int start_ = 0;

@@ -3,9 +3,10 @@
 #pragma once
 
 #include "base/error.h"
-#include "model/view.h"
+#include "light/lamp_grids.h"
 
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace lodestone::povray {
@@ -16,6 +17,8 @@ struct LightSampling {
     bool thorough = false;  // true: more rays are cast before POV-Ray decides whether it needs all
     /// The steps that can be told apart in the widest penumbra: more rays are not needed.
     double steps = std::numeric_limits<double>::infinity();
+    /// The grid of a lamp, where it is known what the lamp lights; `steps` does not count then.
+    std::optional<light::LampGrid> grid{};
 };
 
 /// Appends one light_source, or nothing for a light without power. A surface of albedo a (its

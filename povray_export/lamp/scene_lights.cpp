@@ -29,30 +29,44 @@ void SceneLights::append(std::string& out, Light light) const {
     append_light(out, magnified(light, times_), bound_, sampling, problems_);
 }
 
-std::vector<std::string> SceneLights::declare(std::string& out,
-                                              const light::LightPlan& plan) const {
-    std::vector<std::string> names(plan.lights.size());
-    for (size_t i = 0; i < names.size(); ++i) {
-        std::string light;
-        append(light, plan.lights[i]);
-        if (light.empty())
-            continue;
-        names[i] = "LDS_L_";
-        append_count(names[i], i);
-        out += "#declare " + names[i] + " = " + light;
+std::map<light::GroupLight, std::string> SceneLights::declare(std::string& out,
+                                                              const light::LightPlan& plan) const {
+    std::map<light::GroupLight, std::string> names;
+    std::vector<uint8_t> told(plan.lights.size(), 0);
+    for (const std::vector<light::GroupLight>& group : plan.groups) {
+        for (const light::GroupLight& one : group) {
+            const auto [at, fresh] = names.try_emplace(one);
+            if (!fresh)
+                continue;
+            LightSampling sampling = sampling_;
+            sampling.grid = one.grid;
+            Problems again;  // what is wrong with a light is told once
+            std::string light;
+            append_light(light, magnified(plan.lights[one.light], times_), bound_, sampling,
+                         told[one.light]++ == 0 ? problems_ : again);
+            if (light.empty())
+                continue;
+            at->second = "LDS_L_";
+            append_count(at->second, names.size());
+            out += "#declare " + at->second + " = " + light;
+        }
     }
     return names;
 }
 
-std::string grouped_text(const light::LightPlan& plan, const std::vector<std::string>& names,
+std::string grouped_text(const light::LightPlan& plan,
+                         const std::map<light::GroupLight, std::string>& names,
                          const std::vector<std::string>& objects) {
     std::string out;
     for (size_t i = 0; i < objects.size(); ++i) {
         std::string own;
-        for (const uint32_t light : plan.groups[i]) {
-            if (!names[light].empty())
-                own += "light_source{" + names[light] + "}\n";
+        for (const light::GroupLight& one : plan.groups[i]) {
+            const std::string& name = names.at(one);
+            if (!name.empty())
+                own += "light_source{" + name + "}\n";
         }
+        if (objects.size() == 1)
+            return own + objects[i];
         if (objects[i].empty())
             continue;
         out +=

@@ -6,6 +6,7 @@
 #include "povray_export/lamp/light_writer.h"
 #include "povray_export/scene/shading.h"
 
+#include <map>
 #include <string>
 
 namespace lodestone::povray {
@@ -29,8 +30,10 @@ public:
     /// needs.
     void append(std::string& out, Light light) const;
 
-    /// Declares the lights of a plan; returns their names, empty for a light without power.
-    std::vector<std::string> declare(std::string& out, const light::LightPlan& plan) const;
+    /// Declares the lights of a plan, once for each grid that a group samples them with; returns
+    /// their names, empty for a light without power.
+    std::map<light::GroupLight, std::string> declare(std::string& out,
+                                                     const light::LightPlan& plan) const;
 
 private:
     const View& view_;
@@ -43,8 +46,9 @@ private:
 };
 
 /// The text of all groups with their lights. `objects` has the text of what each group of the plan
-/// lights. Suns light all groups.
-std::string grouped_text(const light::LightPlan& plan, const std::vector<std::string>& names,
+/// lights. Suns light all groups. The lights of a single group are written without it.
+std::string grouped_text(const light::LightPlan& plan,
+                         const std::map<light::GroupLight, std::string>& names,
                          const std::vector<std::string>& objects);
 
 }  // namespace lodestone::povray

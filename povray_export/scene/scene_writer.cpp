@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <span>
 
 namespace lodestone::povray {
@@ -295,11 +296,10 @@ private:
 
     /// The lights of everything that is drawn; its numbers are those of the uses that are drawn.
     light::LightPlan light_plan(const std::vector<Bound>& occluders) {
-        const double error = options_.light_error.value_or(view_.pixel_error);
         report_.lamps = static_cast<uint64_t>(
             std::count_if(model_.lights.begin(), model_.lights.end(), light::is_lamp));
         report_.lights_each = static_cast<double>(report_.lamps);
-        if (!lit() || !(error > 0) || report_.lamps < light::kFewLamps)
+        if (!lit() || options_.light_error == 0.0)
             return {};
         std::vector<light::DrawnThing> drawn;
         drawn.reserve(occluders.size());
@@ -308,8 +308,18 @@ private:
                 drawn.push_back(
                     {includes_.at(use.file).representation, use.world, hidden_in_plan(use)});
         }
+        light::LightDemands demands;
+        demands.grids = {options_.light_error.value_or(view_.pixel_error), shading_.shadow_error,
+                         light_sampling().rays};
+        demands.bounces = shading_.bounces;
+        // Where light is gathered, walls shadow a sky.
+        if (shading_.bounces == 0)
+            demands.sky = sky_.ambient;
+        std::vector<Light> suns = sky_.lights;
+        suns.insert(suns.end(), model_.lights.begin(), model_.lights.end());
+        demands.suns = suns;
         light::LightPlan plan = light::plan_lights(model_, renderer_surfaces(model_), drawn, view_,
-                                                   error, shading_.bounces, problems_, job_);
+                                                   demands, problems_, job_);
         if (!plan.empty())
             report_.lights_each = plan.lights_each;
         return plan;
@@ -317,7 +327,8 @@ private:
 
     /// The text of everything that is drawn, with the lights of its group around it.
     std::string grouped_objects(const light::LightPlan& plan,
-                                const std::vector<std::string>& lights, double times) {
+                                const std::map<light::GroupLight, std::string>& lights,
+                                double times) {
         std::string out;
         std::vector<const OccurrenceUse*> drawn;
         drawn.reserve(uses_.size());
@@ -387,7 +398,7 @@ private:
         std::string lights;
         const SceneLights scene_lights(view_, occluders, bound, times, shading_, light_sampling(),
                                        problems_);
-        const std::vector<std::string> names = scene_lights.declare(lights, plan);
+        const std::map<light::GroupLight, std::string> names = scene_lights.declare(lights, plan);
         std::string objects = grouped_objects(plan, names, times);
         const Camera camera = magnified(view_.camera, times);
         const SceneHead head{view_.pixel_error,    report_.occurrences, times,

@@ -88,29 +88,89 @@ size_t count_of(const std::string& text, const std::string& part) {
 
 class LightPlanTest : public PovrayRenderLights {};
 
-TEST_F(LightPlanTest, AllLampsLightEverythingWhereTheyAreFewOrTheErrorIsNone) {
+TEST_F(LightPlanTest, AllLampsLightEverythingWhereTheirRaysAreFewOrAllAreAskedFor) {
     Builder builder;
     add_rooms(builder);
     Problems problems;
     ExportOptions options = into("exact");
     const Model& model = builder.finish();
-    const ExportReport exact = scenes::write(model, from_above(0), options, problems);
+    options.light_error = 0;
+    const ExportReport exact = scenes::write(model, from_above(1), options, problems);
     EXPECT_EQ(exact.lamps, 4u * kRooms);
     EXPECT_EQ(exact.lights_each, 4.0 * kRooms);
     const std::string all = read_file(options.folder / "scene.pov");
     EXPECT_EQ(count_of(all, "light_group"), 0u);
     EXPECT_EQ(count_of(all, "light_source"), 4u * kRooms);
-    // The override wins over the view's number, both ways.
-    options.light_error = 0;
-    scenes::write(model, from_above(1), options, problems);
-    EXPECT_EQ(count_of(read_file(options.folder / "scene.pov"), "light_group"), 0u);
+    // Originals are geometry: their lamps are chosen, too.
+    options.light_error.reset();
+    scenes::write(model, from_above(0), options, problems);
+    EXPECT_GT(count_of(read_file(options.folder / "scene.pov"), "light_group"), 0u);
     options.light_error = 1;
     scenes::write(model, from_above(0), options, problems);
     EXPECT_GT(count_of(read_file(options.folder / "scene.pov"), "light_group"), 0u);
-    builder.model.lights.resize(kFewLamps - 1);
+    builder.model.lights.resize(static_cast<size_t>(kFewShadowRays) - 1);
     scenes::write(builder.model, from_above(1), options, problems);
     EXPECT_EQ(count_of(read_file(options.folder / "scene.pov"), "light_group"), 0u);
     EXPECT_TRUE(problems.empty());
+}
+
+TEST_F(LightPlanTest, ALampThatMattersToNothingIsNotWritten) {
+    Builder builder;
+    add_rooms(builder);
+    builder.model.lights.clear();
+    builder.model.lights.push_back(scenes::sun(0.5));
+    Light lamp;
+    lamp.kind = LightKind::Area;
+    lamp.position = {2, 2, 400};
+    lamp.power = 10;
+    builder.model.lights.push_back(lamp);
+    Problems problems;
+    ExportOptions options = into("nothing");
+    options.antialiasing = Antialiasing::Final;
+    const ExportReport report = scenes::write(builder.finish(), from_above(0), options, problems);
+    EXPECT_EQ(report.lamps, 1u);
+    EXPECT_EQ(report.lights_each, 0);
+    EXPECT_EQ(count_of(read_file(options.folder / "scene.pov"), "fade_power"), 0u);
+    options.light_error = 0;
+    scenes::write(builder.model, from_above(0), options, problems);
+    EXPECT_EQ(count_of(read_file(options.folder / "scene.pov"), "fade_power"), 1u);
+}
+
+// One mesh of a ground got the grids of all lamps near it everywhere.
+TEST_F(LightPlanTest, AGroundIsCutWhereTheLightOfALampEnds) {
+    Builder builder;
+    const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({0.8, 0.8, 0.8})});
+    builder.place(box, box_at({-200, -200, -0.2}, {200, 200, 0}), "ground");
+    builder.model.lights.push_back(scenes::sun(2));
+    Light lamp;
+    lamp.kind = LightKind::Area;
+    lamp.position = {-150, 0, 2};
+    lamp.power = 100;
+    builder.model.lights.push_back(lamp);
+    builder.model.world.color = glm::dvec3(0.2);
+    View view = from_above(0);
+    view.width = 128;
+    view.height = 128;
+    view.camera.position = {0, 0, 300};
+    view.camera.right = {400, 0, 0};
+    view.camera.up = {0, 400, 0};
+    Problems problems;
+    ExportOptions options = into("ground");
+    options.antialiasing = Antialiasing::Final;
+    const ExportReport report = scenes::write(builder.finish(), view, options, problems);
+    EXPECT_LT(report.lights_each, 0.5);
+    EXPECT_GT(report.lights_each, 0);
+    const std::string text = read_file(options.folder / "scene.pov");
+    EXPECT_GE(count_of(text, "clipped_by"), 2u);
+    EXPECT_EQ(count_of(text, "light_group"), 1u);
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    const scenes::Image ours = scenes::render(builder.model, view, options);
+    ExportOptions as_they_are = into("all");
+    as_they_are.light_error = 0;
+    const scenes::Image all = scenes::render(builder.model, view, as_they_are);
+    for (size_t i = 0; i < all.values.size(); ++i)
+        ASSERT_NEAR(encoded(all.values[i]), encoded(ours.values[i]), 2.5 / 255) << i;
 }
 
 TEST_F(LightPlanTest, RoomsHaveTheirOwnLampsAndTheirFloorIsCut) {
@@ -168,7 +228,7 @@ TEST_F(LightPlanTest, SunsLightEverythingAndNonsenseHurtsNothing) {
     View view = from_above(1);
     view.camera.position = {2, 2, 0.5};
     view.camera.direction = {0, 0, 0};
-    EXPECT_NO_THROW(plan_lights(builder.model, {}, {}, view, 1, 0, problems));
+    EXPECT_NO_THROW(plan_lights(builder.model, {}, {}, view, {}, problems));
 }
 
 TEST_F(PovrayRenderLights, ThePictureIsThatOfAllLampsAndNoRoomIsLitThroughAWall) {
@@ -177,7 +237,9 @@ TEST_F(PovrayRenderLights, ThePictureIsThatOfAllLampsAndNoRoomIsLitThroughAWall)
     Builder builder;
     add_rooms(builder);
     const Model& model = builder.finish();
-    const scenes::Image all = scenes::render(model, from_above(0), into("all"));
+    ExportOptions as_they_are = into("all");
+    as_they_are.light_error = 0;
+    const scenes::Image all = scenes::render(model, from_above(0), as_they_are);
     const scenes::Image ours = scenes::render(model, from_above(1), into("ours"));
     double sum = 0;
     for (size_t i = 0; i < all.values.size(); ++i)
@@ -252,7 +314,9 @@ TEST_F(PovrayRenderLights, WhatIsHiddenFromSomeRaysOrClearKeepsItsFlags) {
     const ObjectIndex lid = builder.mesh(shapes::cube(), {builder.matte({0, 1, 0})});
     builder.place(lid, box_at({0, 0, 3.5}, {4.0 * kRooms, 4, 3.6}), "lid", kCameraRays);
     const Model& model = builder.finish();
-    const scenes::Image all = scenes::render(model, from_above(0), into("all"));
+    ExportOptions as_they_are = into("all");
+    as_they_are.light_error = 0;
+    const scenes::Image all = scenes::render(model, from_above(0), as_they_are);
     const ExportOptions options = into("ours");
     const scenes::Image ours = scenes::render(model, from_above(1), options);
     EXPECT_GT(count_of(read_file(options.folder / "scene.pov"), "light_group"), 1u);

@@ -22,4 +22,10 @@ glm::dvec3 arriving_radiance(const Light& light, const glm::dvec3& point, const 
 /// The change of linear radiance that one step of an 8-bit display shows at this radiance.
 double display_step(double radiance);
 
+/// By how much each color may be off at a point that sends this radiance to the eye: by
+/// `pixel_error` steps of an 8-bit display, and never less than a 1024th of it. A color that is
+/// darker than the others may be off by a 1024th of the brightest, if that is less than an eighth
+/// of a step.
+glm::dvec3 light_tolerance(const glm::dvec3& radiance, double pixel_error);
+
 }  // namespace lodestone::light

@@ -6,7 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
+#include <utility>
 
 namespace lodestone::light {
 namespace {
@@ -29,8 +30,8 @@ using Cells = std::vector<std::vector<uint32_t>>;  // the points of each cell of
 class CoverageSearch {
 public:
     CoverageSearch(const LitScene& scene, const View& view, std::span<const uint8_t> divisible,
-                   LitGrid& grid)
-        : scene_(scene), view_(view), divisible_(divisible), grid_(grid) {
+                   std::span<const uint8_t> wanted, LitGrid& grid)
+        : scene_(scene), view_(view), divisible_(divisible), wanted_(wanted), grid_(grid) {
         const double pixels = static_cast<double>(view.width) * view.height;
         const double part = std::min(kFiner, std::sqrt(kMostLooks / pixels));
         rows_ = std::max(grid.rows, static_cast<size_t>(view.height * part));
@@ -88,6 +89,8 @@ private:
             (static_cast<double>(column) + random.uniform()) / static_cast<double>(columns_);
         const double y = (static_cast<double>(row) + random.uniform()) / static_cast<double>(rows_);
         const size_t cell = cell_at(x, y);
+        if (wanted_[cell] == 0)
+            return;
         for (LitPoint& point : scene_.seen(view_, x, y)) {
             CoverageLook one{std::move(point), cell, kNobody};
             one.speaker = speaker_of(one, [&](size_t there, const auto& speaks) {
@@ -175,6 +178,7 @@ private:
     const LitScene& scene_;
     const View& view_;
     std::span<const uint8_t> divisible_;
+    std::span<const uint8_t> wanted_;  // by cell of the grid
     LitGrid& grid_;
     size_t rows_ = 0;
     size_t columns_ = 0;
@@ -183,9 +187,10 @@ private:
 }  // namespace
 
 std::vector<PointSighting> add_missing_lit_points(const LitScene& scene, const View& view,
-                                                  std::span<const uint8_t> divisible, LitGrid& grid,
+                                                  std::span<const uint8_t> divisible,
+                                                  std::span<const uint8_t> wanted, LitGrid& grid,
                                                   const Job& job) {
-    return CoverageSearch(scene, view, divisible, grid).run(job);
+    return CoverageSearch(scene, view, divisible, wanted, grid).run(job);
 }
 
 void lend_lit_points(std::span<const PointSighting> sightings, const LightRegions& regions,
@@ -197,20 +202,27 @@ void lend_lit_points(std::span<const PointSighting> sightings, const LightRegion
             first.push_back(i);
     }
     first.push_back(regions.pieces.size());
-    std::set<std::pair<uint32_t, uint32_t>> lent;  // region, point
+    // The sighting that is nearest to the point, by region and point.
+    std::map<std::pair<uint32_t, uint32_t>, glm::dvec3> lent;
     for (const PointSighting& seen : sightings) {
         for (size_t i = first[seen.drawn]; i < first[seen.drawn + 1]; ++i) {
             const LitPiece& piece = regions.pieces[i];
             if (!piece.within || !piece.within->contains(seen.position))
                 continue;
-            if (piece.group != points[seen.point].region)
-                lent.emplace(piece.group, seen.point);
+            if (piece.group != points[seen.point].region) {
+                const auto [at, fresh] = lent.try_emplace({piece.group, seen.point}, seen.position);
+                const glm::dvec3& point = points[seen.point].position;
+                if (!fresh && glm::length(seen.position - point) < glm::length(at->second - point))
+                    at->second = seen.position;
+            }
             break;
         }
     }
-    for (const auto& [region, index] : lent) {
+    for (const auto& [key, position] : lent) {
+        const auto& [region, index] = key;
         points.push_back(points[index]);
         points.back().region = region;
+        points.back().position = position;
         shares.push_back(shares[index]);
     }
 }

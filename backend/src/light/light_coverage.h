@@ -15,18 +15,20 @@ struct PointSighting {
     uint32_t point = 0;
 };
 
-/// Looks through every pixel up to four times, half a million times in all. A point that is seen is
+/// Looks through every pixel of the wanted cells up to four times, half a million times in all. A
+/// point that is seen is
 /// alone if no lit point of the same thing, near it (reach_beside) and facing about the same way,
 /// sees it. Around it there are more looks (at most twice as many in all), and points that are
 /// alone become lit points, at most as many as there were (then evenly chosen ones). Returns the
 /// sightings of things that `divisible` allows to be cut. Any number of threads gives the same
 /// result. cost: two rays a look.
 std::vector<PointSighting> add_missing_lit_points(const LitScene& scene, const View& view,
-                                                  std::span<const uint8_t> divisible, LitGrid& grid,
+                                                  std::span<const uint8_t> divisible,
+                                                  std::span<const uint8_t> wanted, LitGrid& grid,
                                                   const Job& job);
 
 /// Lends points where a thing is cut between a sighting and its point: the piece that is seen gets
-/// copies of the point in its region, and of its shares.
+/// copies of the point in its region, at the nearest place where it was seen, and of its shares.
 void lend_lit_points(std::span<const PointSighting> sightings, const LightRegions& regions,
                      std::vector<LitPoint>& points, LightShares& shares);
 

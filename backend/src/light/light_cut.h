@@ -13,9 +13,10 @@ struct LitPoint {
     glm::dvec3 normal{0, 0, 1};  // has length 1; toward the side from which it is seen
     glm::dvec3 to_eye{0, 0, 1};  // has length 1
     glm::dvec3 albedo{0.8};
-    double gloss = 0;     // the albedo of its highlight
-    double exponent = 1;  // that of the cosine of its highlight's half vector
-    uint32_t region = 0;  // the points of one region are lit by the same lights
+    glm::dvec3 other_light{0.0};  // the radiance it sends to the eye from suns and sky
+    double gloss = 0;             // the albedo of its highlight
+    double exponent = 1;          // that of the cosine of its highlight's half vector
+    uint32_t region = 0;          // the points of one region are lit by the same lights
     /// The points next to it: lamps that reach these count as reaching it.
     std::vector<uint32_t> beside;
 };
@@ -26,27 +27,41 @@ struct LitPoint {
 using Reaches = std::function<double(const Light&, const LitPoint&, uint32_t& blocker)>;
 inline constexpr uint32_t kNoBlocker = ~uint32_t{0};
 
-/// By point and lamp: the share that reaches the point; 0 for points that face away from the lamp.
+/// The points in a row that one thread asks for; the same things mostly hide a light from them.
+/// Taste: longer rows try the last blocker more often and share the work less evenly.
+inline constexpr size_t kPointStrip = 128;
+
+/// The radiance that a point sends to the eye from a light that nothing hides.
+glm::dvec3 sent_radiance(const Light& light, const LitPoint& point);
+
+/// Whether lamps may matter at a point: all together, if nothing hid them, they would be more than a
+/// quarter of what it may be off by.
+bool may_matter(std::span<const Light* const> lamps, const LitPoint& point, double pixel_error);
+
+/// By point and lamp: the share that reaches the point; 0 for points that face away from the lamp,
+/// and where the lamp cannot matter.
 using LightShares = std::vector<std::vector<float>>;
 
-/// Finds the shares of every lamp of the tree at every point.
+/// Finds the shares of the lamps of the tree at every point, the strongest first, until all others
+/// together would be less than a quarter of what the point may be off by (light_tolerance), even if
+/// nothing hid them.
 LightShares find_shares(const LightTree& tree, std::span<const LitPoint> points,
-                        const Reaches& reaches, const Job& job = {});
+                        const Reaches& reaches, double pixel_error, const Job& job = {});
 
 /// By region: nodes of the tree, rising.
 using LightCut = std::vector<std::vector<uint32_t>>;
 
 /// For every region the lights that light its points as all lamps of the tree do: the root mean
 /// square of the differences is at most `pixel_error` steps of an 8-bit display, and none is more
-/// than 3 times that. `ambient`: the radiance that lights everything besides. A lamp is left out if
-/// it reaches none of a region's points, nor does any of up to 8 lamps joined with it. A lamp that
-/// does is never left out; the fewest lights that a greedy opening finds stand for all such lamps.
-/// First it opens lights that are nearer to a point than their lamps are to each other, then always
-/// the light with the largest difference: a finer `pixel_error` never gives a region fewer lights.
-/// Roots that are no lamps are not in it. Any number of threads gives the same result. cost: a ray
-/// for every point and light that is tried.
+/// than 3 times that; with 0, none is more than a 1024th of its point's light (light_tolerance).
+/// What is left out, all of it together, is at no point more than that 1024th, or than one step if
+/// `pixel_error` allows it. A lamp counts at a point as if it shone where it reaches a point beside,
+/// and where any of up to 8 lamps joined with it does. At first all lamps are left out; then always
+/// what differs most is lit, or opened, until the rest may differ. A light never stands for lamps
+/// that are nearer to a point than to each other. Roots that are no lamps are not in it. Any number
+/// of threads gives the same result. cost: a ray for every point and light of several that is tried.
 LightCut cut_lights(const LightTree& tree, std::span<const LitPoint> points,
-                    const LightShares& shares, size_t regions, const glm::dvec3& ambient,
-                    const Reaches& reaches, double pixel_error, const Job& job = {});
+                    const LightShares& shares, size_t regions, const Reaches& reaches,
+                    double pixel_error, const Job& job = {});
 
 }  // namespace lodestone::light

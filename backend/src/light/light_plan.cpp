@@ -4,10 +4,12 @@
 #include "light/light_arrival.h"
 #include "light/light_coverage.h"
 #include "light/light_regions.h"
+#include "light/lit_cells.h"
 #include "light/lit_points.h"
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <unordered_set>
 
 namespace lodestone::light {
@@ -16,6 +18,9 @@ namespace {
 // The points for each pixel.
 // Taste: more miss fewer small patches of light, more slowly.
 constexpr double kShare = 0.05;
+// The most points for each pixel.
+// Taste: the looks at small pictures add points where these are too few.
+constexpr double kMostShare = 0.25;
 // The most rays, which are points times lamps.
 // Taste: more keep the points dense with many lamps, more slowly.
 constexpr double kRays = 2e7;
@@ -37,8 +42,9 @@ constexpr size_t kMostLamps = 20000;
 // The most distinct triangles.
 // Taste: each takes 130 bytes while lights are chosen.
 constexpr uint64_t kMostTriangles = 2'000'000;
-// The share of all lamps that may light a point at most: POV-Ray remembers for each lamp what last
-// hid it, but not for the lamps of groups, whose shadows take up to 2.4 times as long.
+// The share of the shadow rays to ungrouped lamps that a point may cost at most: POV-Ray remembers
+// for each lamp what last hid it, but not for the lamps of groups, whose shadows take up to 2.4
+// times as long.
 // Fitted: by tests/bench/speed/bench_lights.py, a house, a corridor and a market of 400 lamps each.
 constexpr double kWorth = 0.6;
 
@@ -52,54 +58,130 @@ uint64_t distinct_triangles(std::span<const DrawnThing> drawn) {
     return count;
 }
 
-LightPlan plan_of(const LightTree& tree, const LightCut& cut, std::span<const LitPoint> points,
-                  const LightRegions& regions) {
-    std::vector<uint32_t> all;
-    for (uint32_t i = 0; i < tree.nodes.size() && tree.nodes[i].leaf(); ++i) {
-        if (is_lamp(tree.nodes[i].light))
-            all.push_back(i);
-    }
-    double sum = 0;
-    for (const LitPoint& point : points)
-        sum += static_cast<double>(cut[point.region].size());
-    LightPlan plan;
-    plan.lights_each = sum / static_cast<double>(points.size());
-    if (!(plan.lights_each < kWorth * static_cast<double>(all.size())))
-        return {};
-    std::map<std::vector<uint32_t>, uint32_t> known{{all, 0}};
-    std::vector<std::vector<uint32_t>> lists{all};
-    std::vector<uint32_t> group_of;
-    for (const std::vector<uint32_t>& list : cut) {
-        const auto [at, fresh] = known.try_emplace(list, static_cast<uint32_t>(lists.size()));
-        if (fresh)
-            lists.push_back(list);
-        group_of.push_back(at->second);
-    }
-    std::vector<uint32_t> number(tree.nodes.size(), kNoLight);
-    for (const std::vector<uint32_t>& list : lists) {
-        std::vector<uint32_t>& group = plan.groups.emplace_back();
-        for (const uint32_t node : list) {
-            if (number[node] == kNoLight) {
-                number[node] = static_cast<uint32_t>(plan.lights.size());
-                plan.lights.push_back(tree.nodes[node].light);
+/// The lights of each region, by nodes of the tree.
+struct RegionLights {
+    const LightTree& tree;
+    const LightCut& cut;
+    const std::vector<std::vector<LampGrid>>& grids;  // in the order of the cut
+};
+
+/// The lamps that matter to any region. `finest`: each with the finest grid that a region needs of
+/// it, or of a light that stands for it; else with one ray.
+std::vector<GroupLight> mattering_lamps(const RegionLights& regions, bool finest) {
+    const LightTree& tree = regions.tree;
+    std::vector<std::optional<LampGrid>> grids(tree.nodes.size());
+    for (size_t region = 0; region < regions.cut.size(); ++region) {
+        for (size_t i = 0; i < regions.cut[region].size(); ++i) {
+            const LampGrid& wanted = regions.grids[region][i];
+            for (const uint32_t lamp : tree.lamps(regions.cut[region][i])) {
+                if (!grids[lamp])
+                    grids[lamp].emplace();
+                if (!finest || !(extent_of(tree.nodes[lamp].light) > 0))
+                    continue;
+                grids[lamp]->rays = std::max(grids[lamp]->rays, wanted.rays);
+                grids[lamp]->parts = grids[lamp]->parts || wanted.parts;
             }
-            group.push_back(number[node]);
         }
     }
-    plan.pieces = regions.pieces;
+    std::vector<GroupLight> out;
+    for (uint32_t lamp = 0; lamp < grids.size(); ++lamp) {
+        if (grids[lamp])
+            out.push_back({lamp, *grids[lamp]});
+    }
+    return out;
+}
+
+double rays_to(const LightTree& tree, const std::vector<GroupLight>& lights) {
+    double sum = 0;
+    for (const GroupLight& one : lights)
+        sum += shadow_rays(tree.nodes[one.light].light, one.grid);
+    return sum;
+}
+
+/// The groups of regions, of lights that are nodes of the tree; things without region are in the
+/// first one.
+LightPlan grouped_plan(const RegionLights& regions, std::span<const LitPoint> points,
+                       const LightRegions& parts) {
+    LightPlan plan;
+    std::vector<std::vector<GroupLight>> lists;
+    for (size_t region = 0; region < regions.cut.size(); ++region) {
+        std::vector<GroupLight>& list = lists.emplace_back();
+        for (size_t i = 0; i < regions.cut[region].size(); ++i)
+            list.push_back({regions.cut[region][i], regions.grids[region][i]});
+    }
+    for (const LitPoint& point : points) {
+        plan.lights_each += static_cast<double>(lists[point.region].size());
+        plan.shadow_rays += rays_to(regions.tree, lists[point.region]);
+    }
+    plan.lights_each /= static_cast<double>(points.size());
+    plan.shadow_rays /= static_cast<double>(points.size());
+    plan.groups.push_back(mattering_lamps(regions, false));
+    std::map<std::vector<GroupLight>, uint32_t> known{{plan.groups[0], 0}};
+    std::vector<uint32_t> group_of;
+    for (std::vector<GroupLight>& list : lists) {
+        const auto [at, fresh] = known.try_emplace(list, static_cast<uint32_t>(plan.groups.size()));
+        if (fresh)
+            plan.groups.push_back(std::move(list));
+        group_of.push_back(at->second);
+    }
+    plan.pieces = parts.pieces;
     for (LitPiece& piece : plan.pieces)
         piece.group = piece.group == kNoRegion ? 0 : group_of[piece.group];
     return plan;
 }
 
+/// The same lamps for everything, each as fine as it is needed anywhere.
+LightPlan single_plan(const RegionLights& regions, size_t things) {
+    LightPlan plan;
+    plan.groups.push_back(mattering_lamps(regions, true));
+    plan.lights_each = static_cast<double>(plan.groups[0].size());
+    plan.shadow_rays = rays_to(regions.tree, plan.groups[0]);
+    for (uint32_t i = 0; i < things; ++i)
+        plan.pieces.push_back({i, 0, {}});
+    return plan;
+}
+
+/// Numbers the lights of a plan, which were nodes of the tree.
+void number_lights(const LightTree& tree, LightPlan& plan) {
+    std::vector<uint32_t> number(tree.nodes.size(), kNoLight);
+    for (std::vector<GroupLight>& group : plan.groups) {
+        for (GroupLight& one : group) {
+            if (number[one.light] == kNoLight) {
+                number[one.light] = static_cast<uint32_t>(plan.lights.size());
+                plan.lights.push_back(tree.nodes[one.light].light);
+            }
+            one.light = number[one.light];
+        }
+    }
+}
+
+LightPlan plan_of(const RegionLights& regions, std::span<const LitPoint> points,
+                  const LightRegions& parts, size_t things) {
+    LightPlan plan = grouped_plan(regions, points, parts);
+    LightPlan single = single_plan(regions, things);
+    if (plan.groups.size() == 1 || !(plan.shadow_rays < kWorth * single.shadow_rays))
+        plan = std::move(single);
+    number_lights(regions.tree, plan);
+    return plan;
+}
+
+double rays_to_all(std::span<const Light> lights, int rays) {
+    double sum = 0;
+    for (const Light& light : lights)
+        sum += is_lamp(light) ? shadow_rays(light, finest_grid(light, rays)) : 0;
+    return sum;
+}
+
 }  // namespace
 
 LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
-                      std::span<const DrawnThing> drawn, const View& view, double pixel_error,
-                      int bounces, Problems& problems, const Job& job) {
+                      std::span<const DrawnThing> drawn, const View& view,
+                      const LightDemands& demands, Problems& problems, const Job& job) {
+    const double pixel_error = demands.grids.pixel_error;
     const auto lamps =
         static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), is_lamp));
-    if (!(pixel_error > 0) || lamps < kFewLamps || drawn.empty() || !ray::available())
+    if (lamps == 0 || rays_to_all(model.lights, demands.grids.rays) < kFewShadowRays ||
+        drawn.empty() || !ray::available())
         return {};
     if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
         problems.push_back({"", Severity::Info, "lights_as_they_are",
@@ -109,10 +191,11 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
         return {};
     }
     const LitScene scene(model, renderer, drawn, job);
-    const double wanted = std::max(kShare * view.width * view.height, kRoomPoints);
+    const double pixels = static_cast<double>(view.width) * view.height;
+    const double wanted = std::max(kShare * pixels, std::min(kRoomPoints, kMostShare * pixels));
     const double count = std::clamp(std::min(wanted, kRays / static_cast<double>(lamps)),
                                     kFewestPoints, kMostPoints);
-    bounces = std::min(bounces, kMostHanded);
+    const int bounces = std::clamp(demands.bounces, 0, kMostHanded);
     LitGrid grid = scene.points(view, static_cast<size_t>(count / (1 + bounces)), bounces, job);
     std::vector<Bound> bounds;
     std::vector<uint8_t> divisible;
@@ -124,8 +207,11 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
                             !scene.partly_clear(i));
     }
     const size_t even = grid.points.size();
+    scene.add_other_light(demands.suns, demands.sky, grid.points, job);
+    const std::vector<uint8_t> cells =
+        cells_with_lamps(model.lights, view, grid, demands.sky, pixel_error, job);
     const std::vector<PointSighting> sightings =
-        add_missing_lit_points(scene, view, divisible, grid, job);
+        add_missing_lit_points(scene, view, divisible, cells, grid, job);
     std::vector<LitPoint>& points = grid.points;
     if (points.empty())
         return {};
@@ -135,13 +221,21 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     const Reaches reaches = [&](const Light& light, const LitPoint& point, uint32_t& blocker) {
         return scene.reaches(light, point, blocker);
     };
-    LightShares shares = find_shares(tree, points, reaches, job);
-    const LightRegions regions = make_light_regions(bounds, divisible, shares, points);
+    scene.add_other_light(demands.suns, demands.sky, std::span(points).subspan(even), job);
+    LightShares shares = find_shares(tree, points, reaches, pixel_error, job);
+    std::vector<double> weights;
+    for (size_t i = 0; i < tree.nodes.size() && tree.nodes[i].leaf(); ++i) {
+        const Light& light = tree.nodes[i].light;
+        weights.push_back(shadow_rays(light, finest_grid(light, demands.grids.rays)));
+    }
+    const LightRegions regions = make_light_regions(bounds, divisible, weights, shares, points);
     lend_lit_points(sightings, regions, points, shares);
-    const LightCut cut = cut_lights(tree, points, shares, regions.count, model.world.color, reaches,
-                                    pixel_error, job);
+    const LightCut cut = cut_lights(tree, points, shares, regions.count, reaches, pixel_error, job);
+    const std::vector<std::vector<LampGrid>> grids =
+        fit_lamp_grids(tree, cut, points, shares, view, demands.grids, job);
     // Added points look at corners: the mean is that of the evenly spread ones.
-    return plan_of(tree, cut, std::span(points).first(even > 0 ? even : points.size()), regions);
+    return plan_of({tree, cut, grids}, std::span(points).first(even > 0 ? even : points.size()),
+                   regions, drawn.size());
 }
 
 }  // namespace lodestone::light

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/job.h"
+#include "light/lamp_grids.h"
 #include "model/model.h"
 
 #include <optional>
@@ -40,38 +41,56 @@ struct LitPiece {
     std::optional<Box3> within;
 };
 
+/// A light of a group, sampled as finely as the group's points need it.
+struct GroupLight {
+    uint32_t light = 0;  // index of LightPlan::lights
+    LampGrid grid;
+
+    auto operator<=>(const GroupLight&) const = default;
+};
+
 struct LightPlan {
     std::vector<Light> lights;  // lamps, and lights that stand for several
-    /// Indices of `lights`; the first group holds all lamps as they are.
-    std::vector<std::vector<uint32_t>> groups;
+    /// The first group lights what no point lies on: by all lamps that matter anywhere. A single
+    /// group lights everything; it needs no group in the renderer.
+    std::vector<std::vector<GroupLight>> groups;
     /// In the order of the drawn things; all pieces of a thing together.
     std::vector<LitPiece> pieces;
     double lights_each = 0;  // the mean number of lights of a point that the view shows
+    double shadow_rays = 0;  // the mean number of shadow rays to them
 
     bool empty() const { return groups.empty(); }
 };
 
-/// With fewer lamps than this, all of them light everything.
-/// Taste: a larger number saves choosing lights where little is to be gained.
-inline constexpr size_t kFewLamps = 8;
+/// What a plan is made for, besides the view.
+struct LightDemands {
+    GridDemands grids;              // with the Pixel Error of lights
+    int bounces = 0;                // how often light goes from surface to surface
+    glm::dvec3 sky{0.0};            // radiance that lights every surface alike, without shadows
+    std::span<const Light> suns{};  // what else lights the points; lamps among them do not count
+};
 
-/// Groups drawn things by the lights that light them. POV-Ray shades a group with its own lamps
-/// alone, while everything in between casts shadows.
+/// With fewer shadow rays to all lamps than this at a point, all of them light everything.
+/// Taste: a larger number saves choosing lights where little is to be gained.
+inline constexpr double kFewShadowRays = 8;
+
+/// Groups drawn things by the lights that light them, each with a grid of rays for that group.
+/// POV-Ray shades a group with its own lamps alone, while everything in between casts shadows.
 ///
 /// Rays are cast from lamps to points that the view shows: one in every 20 pixels, at least 12,000,
 /// in mirrors and behind glass too, and as many more as needed so that every part of a thing that a
-/// pixel shows sees one (light_coverage.h). They tell which lamps reach which points, and by how
-/// much a light that stands for several lamps differs from these (cut_lights). A lamp that reaches
-/// no point of an object, nor any beside these, is not among its lights; so a patch of light
-/// smaller than the distance of points can be missed. Things without any point are lit by all
-/// lamps. Things that many lamps light here and there (the floor of many rooms) are cut into boxes.
-/// `bounces`: how often light goes from surface to surface; then points that send light to what the
-/// view shows are used, too.
+/// pixel shows sees one (light_coverage.h). They tell which lamps reach which points, what they are
+/// worth in all the light there, and by how much a light that stands for several lamps differs from
+/// these (cut_lights). A lamp that reaches no point of an object, nor any beside these, is not among
+/// its lights; so a patch of light smaller than the distance of points can be missed. What lamps
+/// light here and there (the floor of many rooms, a ground) is cut into boxes. With bounces, points
+/// that send light to what the view shows are used, too. A lamp that matters to no point is in no
+/// group.
 ///
-/// Empty if that saves little, lamps are few, `pixel_error` is 0, rays cannot be cast, or there is
-/// too much to cast them at (a problem).
+/// Empty if lamps cost few rays, rays cannot be cast, or there is too much to cast them at (a
+/// problem).
 LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
-                      std::span<const DrawnThing> drawn, const View& view, double pixel_error,
-                      int bounces, Problems& problems, const Job& job = {});
+                      std::span<const DrawnThing> drawn, const View& view,
+                      const LightDemands& demands, Problems& problems, const Job& job = {});
 
 }  // namespace lodestone::light

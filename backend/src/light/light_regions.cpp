@@ -19,21 +19,35 @@ constexpr size_t kCell = 16;
 // The most boxes of one thing.
 // Taste: more cut finer; each is another clipped copy in POV-Ray.
 constexpr size_t kPieces = 128;
-// The most lamps that light a box that is not cut further.
+// The most shadow rays to the lamps of a box that is not cut further.
 // Taste: fewer cut further for less.
-constexpr size_t kFewLamps = 6;
-// The most light that a cut may leave, in parts of the lights at all points.
+constexpr double kFewRays = 6;
+// The most shadow rays that a cut may leave, in parts of those at all points.
 // Taste: a larger share cuts more often for less.
 constexpr double kWorthCutting = 0.8;
 // The widest gaps between points along an axis that are tried.
 // Taste: more find better cuts, more slowly.
 constexpr size_t kGaps = 12;
+// The places along an axis that are tried where the light of a lamp begins or ends.
+// Taste: more find better cuts, more slowly.
+constexpr size_t kEnds = 24;
+// The least extent of points along an axis that is cut, in parts of the thing's size.
+// Taste: a flat thing is not cut along itself.
+constexpr double kFlat = 1e-4;
+// The narrowest gap between points that is cut, in parts of the thing's size.
+// Law: positions are known to about that, so narrower ones may be none.
+constexpr double kNarrow = 1e-7;
 
 class RegionMaker {
 public:
     RegionMaker(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
-                const LightShares& shares, std::vector<LitPoint>& points)
-        : bounds_(bounds), divisible_(divisible), shares_(shares), points_(points) {}
+                std::span<const double> weights, const LightShares& shares,
+                std::vector<LitPoint>& points)
+        : bounds_(bounds),
+          divisible_(divisible),
+          weights_(weights),
+          shares_(shares),
+          points_(points) {}
 
     LightRegions make() {
         note_lamps();
@@ -102,25 +116,27 @@ private:
             lamps[i] |= reaching_[point * width_ + i];
     }
 
-    static size_t count_of(const Words& lamps) {
-        size_t count = 0;
-        for (const uint64_t word : lamps)
-            count += static_cast<size_t>(std::popcount(word));
-        return count;
+    double rays_to(const Words& lamps) const {
+        double sum = 0;
+        for (size_t i = 0; i < lamps.size(); ++i) {
+            for (uint64_t word = lamps[i]; word != 0; word &= word - 1)
+                sum += weights_[64 * i + static_cast<size_t>(std::countr_zero(word))];
+        }
+        return sum;
     }
 
-    /// The number of lamps that reach any of the points.
-    size_t lamps_of(std::span<const uint32_t> points) const {
+    /// The shadow rays to all lamps that reach any of the points.
+    double rays_of(std::span<const uint32_t> points) const {
         Words lamps(width_, 0);
         for (const uint32_t point : points)
             join(lamps, point);
-        return count_of(lamps);
+        return rays_to(lamps);
     }
 
-    /// The numbers of lamps that reach any of the points before each place, and from it on.
+    /// The rays to the lamps that reach any of the points before each place, and from it on.
     /// `places` rise.
-    void lamps_beside(std::span<const uint32_t> points, std::span<const size_t> places,
-                      std::vector<size_t>& before, std::vector<size_t>& behind) const {
+    void rays_beside(std::span<const uint32_t> points, std::span<const size_t> places,
+                     std::vector<double>& before, std::vector<double>& behind) const {
         before.resize(places.size());
         behind.resize(places.size());
         Words lamps(width_, 0);
@@ -128,27 +144,59 @@ private:
         for (size_t k = 0; k < places.size(); ++k) {
             for (; next < places[k]; ++next)
                 join(lamps, points[next]);
-            before[k] = count_of(lamps);
+            before[k] = rays_to(lamps);
         }
         lamps.assign(width_, 0);
         next = points.size();
         for (size_t k = places.size(); k-- > 0;) {
             for (; next > places[k]; --next)
                 join(lamps, points[next - 1]);
-            behind[k] = count_of(lamps);
+            behind[k] = rays_to(lamps);
         }
     }
 
-    SplitPlane best_plane(const std::vector<uint32_t>& given, double least) {
+    /// The places where the first or the last point is that a lamp reaches, rising.
+    std::vector<size_t> ends_of_light(std::span<const uint32_t> points) const {
+        std::vector<size_t> out;
+        Words known(width_, 0);
+        const auto note = [&](size_t at, size_t place) {
+            bool fresh = false;
+            for (size_t i = 0; i < width_; ++i) {
+                const uint64_t here = reaching_[points[at] * width_ + i];
+                fresh = fresh || (here & ~known[i]) != 0;
+                known[i] |= here;
+            }
+            if (fresh && place >= kCell && place + kCell <= points.size())
+                out.push_back(place);
+        };
+        for (size_t i = 0; i < points.size(); ++i)
+            note(i, i);
+        known.assign(width_, 0);
+        for (size_t i = points.size(); i-- > 0;)
+            note(i, i + 1);
+        std::sort(out.begin(), out.end());
+        out.erase(std::unique(out.begin(), out.end()), out.end());
+        if (out.size() > kEnds) {
+            for (size_t i = 0; i < kEnds; ++i)
+                out[i] = out[i * out.size() / kEnds];
+            out.resize(kEnds);
+        }
+        return out;
+    }
+
+    SplitPlane best_plane(const std::vector<uint32_t>& given, double size) {
         SplitPlane best;
         best.cost = std::numeric_limits<double>::infinity();
         std::vector<uint32_t> points = given;
-        std::vector<size_t> before;
-        std::vector<size_t> behind;
+        std::vector<double> before;
+        std::vector<double> behind;
         for (int axis = 0; axis < 3; ++axis) {
             std::stable_sort(points.begin(), points.end(), [&](uint32_t a, uint32_t b) {
                 return points_[a].position[axis] < points_[b].position[axis];
             });
+            if (!(points_[points.back()].position[axis] - points_[points[0]].position[axis] >
+                  kFlat * size))
+                continue;
             std::vector<size_t> places;
             for (size_t i = kCell; i + kCell <= points.size(); ++i)
                 places.push_back(i);
@@ -159,16 +207,18 @@ private:
                              [&](size_t a, size_t b) { return gap(a) > gap(b); });
             places.resize(std::min(places.size(), kGaps));
             places.push_back(points.size() / 2);
+            const std::vector<size_t> ends = ends_of_light(points);
+            places.insert(places.end(), ends.begin(), ends.end());
             std::vector<size_t> rising = places;
             std::sort(rising.begin(), rising.end());
-            lamps_beside(points, rising, before, behind);
+            rays_beside(points, rising, before, behind);
             for (const size_t place : places) {
-                if (!(gap(place) > least))
+                if (!(gap(place) > kNarrow * size))
                     continue;
                 const auto at = static_cast<size_t>(
                     std::lower_bound(rising.begin(), rising.end(), place) - rising.begin());
-                const double cost = static_cast<double>(place * before[at]) +
-                                    static_cast<double>((points.size() - place) * behind[at]);
+                const double cost = static_cast<double>(place) * before[at] +
+                                    static_cast<double>(points.size() - place) * behind[at];
                 if (cost < best.cost)
                     best = {cost, axis,
                             (points_[points[place]].position[axis] +
@@ -188,21 +238,20 @@ private:
         whole.box.low -= margin;
         whole.box.high += margin;
         whole.points = points;
-        // A flat thing is not cut along itself.
-        const double least = 1e-4 * glm::length(whole.box.size());
+        const double size = glm::length(whole.box.size());
         std::vector<RegionPart> open{whole};
         std::vector<RegionPart> done;
         while (!open.empty()) {
             RegionPart part = std::move(open.back());
             open.pop_back();
-            const size_t lamps = lamps_of(part.points);
-            if (!divisible || lamps <= kFewLamps || part.points.size() < 2 * kCell ||
+            const double rays = rays_of(part.points);
+            if (!divisible || rays <= kFewRays || part.points.size() < 2 * kCell ||
                 open.size() + done.size() + 2 > kPieces) {
                 done.push_back(std::move(part));
                 continue;
             }
-            const SplitPlane plane = best_plane(part.points, least);
-            if (!(plane.cost <= kWorthCutting * static_cast<double>(part.points.size() * lamps))) {
+            const SplitPlane plane = best_plane(part.points, size);
+            if (!(plane.cost <= kWorthCutting * static_cast<double>(part.points.size()) * rays)) {
                 done.push_back(std::move(part));
                 continue;
             }
@@ -259,6 +308,7 @@ private:
 
     std::span<const Bound> bounds_;
     std::span<const uint8_t> divisible_;
+    std::span<const double> weights_;  // by lamp
     const LightShares& shares_;
     std::vector<LitPoint>& points_;
     std::vector<size_t> counts_;       // by thing
@@ -272,8 +322,9 @@ private:
 }  // namespace
 
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
-                                const LightShares& shares, std::vector<LitPoint>& points) {
-    return RegionMaker(bounds, divisible, shares, points).make();
+                                std::span<const double> weights, const LightShares& shares,
+                                std::vector<LitPoint>& points) {
+    return RegionMaker(bounds, divisible, weights, shares, points).make();
 }
 
 }  // namespace lodestone::light

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/lit_points.h"
 
+#include "base/color.h"
+#include "base/maths.h"
 #include "base/parallel.h"
 #include "choose/criterion.h"
 #include "light/light_arrival.h"
@@ -11,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <unordered_map>
 
@@ -29,6 +32,13 @@ constexpr double kBeside = 8;
 // Where a ray begins again, in parts of its way.
 // Law: positions are known to 1e-7 of it; this is a large margin.
 constexpr double kRelative = 1e-4;
+
+bool shines_as_sun(const Light& light) {
+    const glm::dvec3 energy = energy_of(light);
+    const double length = glm::length(light.direction);
+    return light.kind == LightKind::Sun && finite(energy) && length > 0 && std::isfinite(length) &&
+           std::min({energy.x, energy.y, energy.z}) >= 0;
+}
 
 bool see_through(const Material& material) {
     const bool covered =
@@ -108,11 +118,15 @@ LitScene::LitScene(const Model& model, const RendererSurfaces& renderer,
         const Bound& bound = lit.representation->summary.bound;
         if ((lit.hidden & kCameraRays) == 0 || (lit.hidden & kReflectionRays) == 0)
             seen_.add(shape.all, bound, lit.world, i);
-        if ((lit.hidden & kShadowRays) == 0 && shape.opaque)
+        if ((lit.hidden & kShadowRays) != 0)
+            continue;
+        dimming_.add(shape.all, bound, lit.world, i);
+        if (shape.opaque)
             blocking_.add(shape.opaque, bound, lit.world, i);
     }
     seen_.finish();
     blocking_.finish();
+    dimming_.finish();
     // Rays have single precision.
     least_ = 1e-6 * glm::length(seen_.box().size());
 }
@@ -262,6 +276,40 @@ bool LitScene::clear(const glm::dvec3& from, const glm::dvec3& to) const {
     if (!(glm::dot(way, way) > 0))
         return true;
     return !blocking_.occluded(from + way * kRelative, way, 1 - 2 * kRelative);
+}
+
+void LitScene::add_other_light(std::span<const Light> suns, const glm::dvec3& sky,
+                               std::span<LitPoint> points, const Job& job) const {
+    // The strongest suns that are asked for; light of others is as if it were not there.
+    // Taste: more cost a ray at every point, and leave out a little more.
+    constexpr size_t kMostSuns = 8;
+    std::vector<const Light*> strongest;
+    for (const Light& light : suns) {
+        if (shines_as_sun(light))
+            strongest.push_back(&light);
+    }
+    std::stable_sort(strongest.begin(), strongest.end(), [](const Light* a, const Light* b) {
+        return luminance(energy_of(*a)) > luminance(energy_of(*b));
+    });
+    strongest.resize(std::min(strongest.size(), kMostSuns));
+    parallel_for((points.size() + kPointStrip - 1) / kPointStrip, [&](size_t strip) {
+        job.check();
+        std::vector<uint32_t> blockers(strongest.size(), ray::PlacedScenes::kNothing);
+        const size_t end = std::min(points.size(), (strip + 1) * kPointStrip);
+        for (size_t i = strip * kPointStrip; i < end; ++i) {
+            LitPoint& point = points[i];
+            point.other_light = point.albedo * glm::max(sky, glm::dvec3(0.0));
+            for (size_t k = 0; k < strongest.size(); ++k) {
+                const glm::dvec3 way = -glm::normalize(strongest[k]->direction);
+                const double cosine = glm::dot(way, point.normal);
+                if (cosine > 0 &&
+                    (!strongest[k]->shadow ||
+                     !dimming_.occluded(point.position + point.aside, way,
+                                        std::numeric_limits<double>::infinity(), blockers[k])))
+                    point.other_light += point.albedo * energy_of(*strongest[k]) * (cosine / kPi);
+            }
+        }
+    });
 }
 
 double LitScene::reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const {

@@ -38,6 +38,11 @@ public:
         return followed(ray_at(view, x, y));
     }
 
+    /// Sets the light that points get besides lamps: of a sky that lights every surface alike, and
+    /// of suns where nothing hides them (what is partly clear hides them, too).
+    void add_other_light(std::span<const Light> suns, const glm::dvec3& sky,
+                         std::span<LitPoint> points, const Job& job) const;
+
     /// The share of a light that reaches a point; see-through surfaces hide nothing. `blocker`: see
     /// Reaches.
     double reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const;
@@ -79,6 +84,7 @@ private:
     std::vector<LitSurface> surfaces_;  // by material, and one more for things without material
     ray::PlacedScenes seen_;
     ray::PlacedScenes blocking_;
+    ray::PlacedScenes dimming_;  // blocking_, and what is partly clear
     double tolerance_ = 0;
     double least_ = 0;  // no ray begins nearer than this to the surface it leaves
 };

@@ -33,10 +33,11 @@ double of_sun(const Light& sun, const View& view, std::span<const Bound> occlude
     return widest;
 }
 
+// How many times the size of a light its penumbra is, at most.
+// Taste: occluders a third of the way from the light enlarge it twice; nearer ones, more.
+constexpr double kMagnified = 2;
+
 double of_lamp(const Light& lamp, const View& view) {
-    // How many times the size of a light its penumbra is, at most.
-    // Taste: occluders a third of the way from the light enlarge it twice; nearer ones, more.
-    constexpr double kMagnified = 2;
     // The irradiance below which a light counts as not shining.
     // Law: about one step of an 8-bit display.
     constexpr double kDarkest = 0.004;
@@ -63,6 +64,11 @@ double widest_penumbra(const Light& light, const View& view, std::span<const Bou
             return of_lamp(light, view);
     }
     return 0;
+}
+
+double penumbra_at(const Light& lamp, const View& view, const glm::dvec3& point) {
+    const double z = glm::length(point - view.camera.position);
+    return kMagnified * 2 * extent_of(lamp) / choose::pixel_size(view, z);
 }
 
 }  // namespace lodestone::light

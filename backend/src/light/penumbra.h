@@ -18,4 +18,7 @@ namespace lodestone::light {
 /// without occluders.
 double widest_penumbra(const Light& light, const View& view, std::span<const Bound> occluders);
 
+/// The widest penumbra, in pixels, that a lamp gives at a point: twice its size, seen there.
+double penumbra_at(const Light& lamp, const View& view, const glm::dvec3& point);
+
 }  // namespace lodestone::light

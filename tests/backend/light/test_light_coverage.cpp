@@ -49,8 +49,9 @@ TEST_F(LightCoverage, NothingIsSpokenForByAPointFarFromIt) {
     const size_t even = grid.points.size();
     ASSERT_GT(even, 50u);
     const std::vector<uint8_t> divisible = {1};
+    const std::vector<uint8_t> all_cells(grid.rows * grid.columns, 1);
     const std::vector<PointSighting> sightings =
-        add_missing_lit_points(scene, view, divisible, grid, {});
+        add_missing_lit_points(scene, view, divisible, all_cells, grid, {});
     ASSERT_GT(sightings.size(), 1000u);
     size_t far = 0;
     for (const PointSighting& seen : sightings) {

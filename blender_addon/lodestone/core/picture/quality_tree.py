@@ -16,6 +16,7 @@ MOST_PIXELS = 1024.0
 # The kinds of Antialiasing: one sample a pixel; more where neighbors differ; 16 everywhere
 OFF, ADAPTIVE, REFERENCE = "OFF", "FINAL", "REFERENCE"
 _FEWEST_PIXELS = 0.25  # nothing finer shows
+_LEAST_STEPS = 1e-6  # lamps lose less than 1/1024 of a point's light; 0 would keep all as they are
 _DRAFT = 8.0  # pixels
 
 
@@ -116,7 +117,7 @@ CONTROLS = (
     Control(
         "lights", "Lights", ROOT, _same, "px", 0.0, MOST_PIXELS,
         "Many lamps become few, never through walls, as far as points of the picture change by "
-        "about so many steps of 255. 0 keeps all lamps",
+        "about so many steps of 255. 0: no point loses more than a 1024th of its light",
     ),
     Control(
         "antialias", "Antialiasing", ROOT, _antialiasing, "", None, None,
@@ -171,7 +172,7 @@ class Quality(NamedTuple):
             "area_samples": self.area_samples,
             "sky_lights": self.indirect or -1,
             "shadow_error": max(self.shadows, _FEWEST_PIXELS),
-            "light_error": self.lights if self.antialias != REFERENCE else 0.0,
+            "light_error": 0.0 if self.antialias == REFERENCE else max(self.lights, _LEAST_STEPS),
             "reflection_error": max(self.reflections, 1.0),
             "texture_error": self.textures,
             "bounces": self.bounces,

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "light/lamp_grids.h"
+
+#include "base/color.h"
+#include "base/parallel.h"
+#include "light/light_arrival.h"
+#include "light/penumbra.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::light {
+namespace {
+
+// The pixels of the narrowest penumbra that shows.
+// Taste: antialiasing shows no less; a larger value draws more shadows sharp.
+constexpr double kLeastPenumbra = 0.25;
+// The longer over the shorter edge of an area light above which its grid is longer, too.
+// Taste: 17 x 5 rays are about as many as 9 x 9.
+constexpr double kLong = 3;
+// The same, for lights as long as tubes.
+// Taste: 33 x 3 rays are about as many as 9 x 9.
+constexpr double kVeryLong = 12;
+// The rays of a finer grid that POV-Ray always casts.
+// Law: 3 x 3, as such grids are written (adaptive 1).
+constexpr double kAlways = 9;
+// The share of the others that it casts.
+// Taste: most points see all of a lamp or nothing of it.
+constexpr double kRefined = 0.25;
+
+double edge_ratio(const Light& light) {
+    if (light.kind != LightKind::Area)
+        return 1;
+    const double u = glm::length(light.edge_u);
+    const double v = glm::length(light.edge_v);
+    return std::max(u, v) / std::max(std::min(u, v), 1e-300);
+}
+
+/// The number of rays along an edge, as it can be drawn: 2^n + 1, for POV-Ray refines by halving,
+/// or 2.
+int grid_rays(double wanted, int most) {
+    int rays = 1;
+    while (rays < most && rays < wanted)
+        rays = rays < 3 ? rays + 1 : 2 * rays - 1;
+    return std::min(rays, most);
+}
+
+/// The steps of an 8-bit display that a light is worth in all the light of a point.
+double display_steps(const glm::dvec3& all, const glm::dvec3& part) {
+    double steps = 0;
+    for (int i = 0; i < 3; ++i) {
+        const double with = std::clamp(all[i], 0.0, 1.0);
+        const double without = std::clamp(all[i] - part[i], 0.0, 1.0);
+        steps = std::max(steps, 255 * (encode_srgb(with) - encode_srgb(without)));
+    }
+    return steps;
+}
+
+/// The rays along an edge that a light needs at one kind of difference, over the points of a region.
+class GridNeed {
+public:
+    GridNeed(const Light& light, const View& view, const GridDemands& demands)
+        : light_(light),
+          view_(view),
+          narrowest_(std::max(kLeastPenumbra, demands.shadow_error)),
+          step_(std::max(1.0, demands.pixel_error)) {}
+
+    void add(const LitPoint& point, const glm::dvec3& all, const glm::dvec3& part) {
+        const double steps = display_steps(all, part) / step_;
+        const double pixels = penumbra_at(light_, view_, point.position) / narrowest_;
+        penumbra_ = std::max(penumbra_, std::min(pixels, steps));
+        // The middles of n parts of a width w at the distance d give the light of all of it to
+        // about (w / (n d))^2 / 4 of it.
+        const double away = std::max(glm::length(light_.position - point.position), 1e-9);
+        spread_ = std::max(spread_, 2 * extent_of(light_) / away * std::sqrt(steps / 2));
+    }
+
+    LampGrid grid(int most) const {
+        LampGrid out;
+        const bool parts = light_.kind != LightKind::Point;
+        out.rays = grid_rays(std::max(penumbra_, parts ? spread_ : 0.0), most);
+        // The edge of a cone is as soft as a shadow's.
+        const bool cone = light_.kind == LightKind::Spot || light_.spread > 0;
+        out.parts = parts && out.rays > 1 && (cone || spread_ > 1);
+        return out;
+    }
+
+private:
+    const Light& light_;
+    const View& view_;
+    double narrowest_;
+    double step_;
+    double penumbra_ = 0;
+    double spread_ = 0;
+};
+
+}  // namespace
+
+LampGrid finest_grid(const Light& light, int rays) {
+    if (!(extent_of(light) > 0) || rays <= 1 || !light.shadow)
+        return {};
+    if (light.kind == LightKind::Point)
+        return {rays, false};
+    const double ratio = edge_ratio(light);
+    if (ratio > kLong)
+        return {ratio > kVeryLong ? 2 * rays - 1 : rays, true};
+    return {std::max(3, (rays - 1) / 2 + 1), true};
+}
+
+int shorter_edge(const Light& light, int rays) {
+    const double ratio = edge_ratio(light);
+    const int halved = (rays - 1) / (ratio > kVeryLong ? 16 : ratio > kLong ? 4 : 1) + 1;
+    return std::min(rays, std::max(halved, rays > 5 ? 3 : 2));
+}
+
+double shadow_rays(const Light& light, const LampGrid& grid) {
+    const double all = static_cast<double>(grid.rays) * shorter_edge(light, grid.rays);
+    return all <= kAlways ? all : kAlways + kRefined * (all - kAlways);
+}
+
+std::vector<std::vector<LampGrid>> fit_lamp_grids(const LightTree& tree, const LightCut& cut,
+                                                  std::span<const LitPoint> points,
+                                                  const LightShares& shares, const View& view,
+                                                  const GridDemands& demands, const Job& job) {
+    std::vector<std::vector<uint32_t>> members(cut.size());
+    for (size_t i = 0; i < points.size(); ++i)
+        members.at(points[i].region).push_back(static_cast<uint32_t>(i));
+    std::vector<std::vector<LampGrid>> out(cut.size());
+    parallel_for(cut.size(), [&](size_t region) {
+        job.check();
+        const std::vector<uint32_t>& nodes = cut[region];
+        std::vector<GridNeed> needs;
+        std::vector<LampGrid> finest;
+        for (const uint32_t node : nodes) {
+            needs.emplace_back(tree.nodes[node].light, view, demands);
+            finest.push_back(finest_grid(tree.nodes[node].light, demands.rays));
+        }
+        std::vector<glm::dvec3> parts(nodes.size());
+        for (const uint32_t index : members[region]) {
+            const LitPoint& point = points[index];
+            glm::dvec3 all = point.other_light;
+            for (size_t i = 0; i < nodes.size(); ++i) {
+                parts[i] = sent_radiance(tree.nodes[nodes[i]].light, point);
+                double share = 0;
+                for (const uint32_t lamp : tree.lamps(nodes[i]))
+                    share = std::max(share, static_cast<double>(shares[index][lamp]));
+                all += share * parts[i];
+            }
+            for (size_t i = 0; i < nodes.size(); ++i) {
+                if (finest[i].rays > 1 && parts[i].x + parts[i].y + parts[i].z > 0)
+                    needs[i].add(point, glm::max(all, parts[i]), parts[i]);
+            }
+        }
+        for (size_t i = 0; i < nodes.size(); ++i)
+            out[region].push_back(finest[i].rays > 1 ? needs[i].grid(finest[i].rays) : finest[i]);
+    });
+    return out;
+}
+
+}  // namespace lodestone::light

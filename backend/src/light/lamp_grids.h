@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lamp grids: by how many shadow rays the size of a lamp is sampled for what it lights: one far
+// away, a grid near by.
+#pragma once
+
+#include "light/light_cut.h"
+
+namespace lodestone::light {
+
+/// How the size of a light is sampled for a part of a picture.
+struct LampGrid {
+    int rays = 1;        // along its longer edge; 1: one shadow ray, to its middle
+    bool parts = false;  // each part of it lights by its own distance and angle
+
+    auto operator<=>(const LampGrid&) const = default;
+};
+
+/// How finely lamps are sampled.
+struct GridDemands {
+    double pixel_error = 0;   // steps of an 8-bit display
+    double shadow_error = 0;  // pixels: narrower penumbrae are sharp
+    int rays = 17;            // along the edge of a large lamp, at most; 1: all shadows are sharp
+};
+
+/// The grid by which a light is sampled where nothing is known of what it lights.
+LampGrid finest_grid(const Light& light, int rays);
+
+/// The rays along the shorter edge for this number along the longer one.
+int shorter_edge(const Light& light, int rays);
+
+/// The shadow rays that a light costs at a point in the mean. POV-Ray begins with 3 x 3, and casts
+/// more where these disagree.
+double shadow_rays(const Light& light, const LampGrid& grid);
+
+/// By region, in the order of its lights: the coarsest grids that show no step. Along an edge there
+/// are as many rays as the penumbra has pixels that can be told apart, or as the light has steps of
+/// an 8-bit display at the point (by each row of rays that is hidden it falls by one), whichever is
+/// less; and as many as keep its unhidden light within half a step where it is near and wide. Never
+/// more than finest_grid(). Any number of threads gives the same result.
+std::vector<std::vector<LampGrid>> fit_lamp_grids(const LightTree& tree, const LightCut& cut,
+                                                  std::span<const LitPoint> points,
+                                                  const LightShares& shares, const View& view,
+                                                  const GridDemands& demands, const Job& job = {});
+
+}  // namespace lodestone::light

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards by how many rays lamps are sampled: one where nothing softer shows, all of them near by.
+#include "base/parallel.h"
+#include "base/random.h"
+#include "light/lamp_grids.h"
+
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+using namespace lodestone::light;
+
+namespace {
+
+Light panel(double size, double power) {
+    Light light;
+    light.kind = LightKind::Area;
+    light.position = {0, 0, 2};
+    light.edge_u = {size, 0, 0};
+    light.edge_v = {0, size, 0};
+    light.power = power;
+    return light;
+}
+
+View from_above() {
+    View view;
+    view.width = 640;
+    view.height = 360;
+    view.camera.position = {0, 0, 6};
+    view.camera.direction = {0, 0, -1};
+    view.camera.right = {1, 0, 0};
+    view.camera.up = {0, 0.5625, 0};
+    return view;
+}
+
+/// Points of a floor about a place, which get this much light besides.
+std::vector<LitPoint> floor_at(double x, double others) {
+    PcgRandom random(5);
+    std::vector<LitPoint> points(40);
+    for (LitPoint& point : points) {
+        point.position = {x + random.uniform(), random.uniform(), 0};
+        point.other_light = glm::dvec3(others);
+    }
+    return points;
+}
+
+LampGrid grid_of(const Light& light, const std::vector<LitPoint>& points,
+                 const GridDemands& demands = {}) {
+    const LightTree tree =
+        make_light_tree({&light, 1}, [](const glm::dvec3&, const glm::dvec3&) { return true; });
+    const LightShares shares(points.size(), {1.0f});
+    return fit_lamp_grids(tree, {{0}}, points, shares, from_above(), demands).at(0).at(0);
+}
+
+}  // namespace
+
+TEST(LampGrids, APointOrALampWithoutShadowHasOneRay) {
+    Light light = panel(1, 100);
+    light.kind = LightKind::Point;
+    EXPECT_EQ(finest_grid(light, 17).rays, 1);
+    light.radius = 0.1;
+    EXPECT_EQ(finest_grid(light, 17).rays, 17);
+    EXPECT_EQ(finest_grid(light, 1).rays, 1);
+    light.shadow = false;
+    EXPECT_EQ(finest_grid(light, 17).rays, 1);
+    EXPECT_EQ(shadow_rays(light, {1, false}), 1);
+    EXPECT_EQ(shadow_rays(light, {3, false}), 9);
+}
+
+TEST(LampGrids, LongPanelsHaveLongGrids) {
+    Light light = panel(1, 100);
+    EXPECT_EQ(finest_grid(light, 17), (LampGrid{9, true}));
+    EXPECT_EQ(shorter_edge(light, 9), 9);
+    light.edge_v *= 0.2;
+    EXPECT_EQ(finest_grid(light, 17).rays, 17);
+    EXPECT_EQ(shorter_edge(light, 17), 5);
+    light.edge_v *= 0.2;
+    EXPECT_EQ(finest_grid(light, 17).rays, 33);
+    EXPECT_EQ(shorter_edge(light, 33), 3);
+    for (const int rays : {1, 2, 3, 5})
+        EXPECT_LE(shorter_edge(light, rays), rays);
+}
+
+TEST(LampGrids, NearAndStrongIsFinestFarOrFaintIsOneRay) {
+    const Light light = panel(1, 100);
+    EXPECT_EQ(grid_of(light, floor_at(0, 0)), (LampGrid{9, true}));
+    EXPECT_EQ(grid_of(light, floor_at(60, 1)), LampGrid{});
+    EXPECT_EQ(grid_of(panel(1, 0.01), floor_at(0, 0.5)), LampGrid{});
+    // In bright light fewer steps of its shadow can be told apart.
+    int before = 9;
+    for (const double others : {0.0, 0.1, 0.3, 1.0}) {
+        const int rays = grid_of(panel(1, 4), floor_at(1, others)).rays;
+        EXPECT_LE(rays, before);
+        before = rays;
+    }
+    EXPECT_LT(before, 9);
+}
+
+TEST(LampGrids, RoughPicturesHaveFewerRaysAndNoneHasMoreThanAsked) {
+    const Light light = panel(0.2, 10);
+    int before = 9;
+    for (const double error : {0.0, 1.0, 4.0, 16.0, 64.0}) {
+        const int rays = grid_of(light, floor_at(0, 0.1), {error, error, 17}).rays;
+        EXPECT_LE(rays, before);
+        before = rays;
+    }
+    EXPECT_LT(before, 9);
+    EXPECT_LE(grid_of(light, floor_at(0, 0), {0, 0, 5}).rays, 3);
+    EXPECT_EQ(grid_of(light, floor_at(0, 0), {0, 0, 1}).rays, 1);
+}
+
+TEST(LampGrids, ASmallLampLightsAsAWhole) {
+    const LampGrid small = grid_of(panel(0.02, 100), floor_at(4, 0));
+    EXPECT_GT(small.rays, 1);
+    EXPECT_FALSE(small.parts);
+    EXPECT_TRUE(grid_of(panel(2, 100), floor_at(0, 0)).parts);
+}
