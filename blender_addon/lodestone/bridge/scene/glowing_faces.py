@@ -4,8 +4,9 @@
 Flat faces become area lights just above themselves, on both sides as in Cycles (on the outside of
 closed bodies); small round bodies become points of the same power in their middles. Both give what
 Cycles gives of a surface of radiance L: areas have 4 A L watts in Blender's units, a convex body of
-surface A sends as much in the mean over all directions as a point of pi A L watts. Anything else
-glows without shining, which is named.
+surface A sends as much in the mean over all directions as a point of pi A L watts. A lantern, whose
+sides are all around its middle, is one such point. Anything else glows without shining, which is
+named.
 """
 
 import math
@@ -23,13 +24,17 @@ from .. import blender_versions, datablock_ids
 
 MOST_FACES = 4096  # a mesh with more is not looked at
 MOST_FLAT = 6  # sides of a body
-MOST_LIGHTS = 24  # the strongest of a scene: each costs rays at every point of the picture
+MOST_LIGHTS = 20_000  # with all lamps of a scene: more cannot be looked through (light_plan.cpp)
 LEAST = 0.01  # radiance that lights something
 NAMED = 1.0  # things that glow brighter, and shine on nothing, are named
 _SAME_PLANE = 0.9994  # cosine of 2 degrees
 _FULL = 0.8  # a rectangle is 1, a disk 1.05, a triangle 0.87 of the rectangle of its inertia
 _ROUND = 0.4  # 36 pi V^2 / A^3: a ball is 1, a cube 0.52
 _ABOVE = 2e-3  # a share of a light's size, from the faces that it stands for
+_LANTERN = 0.5  # the least extent over the largest of what shines alike all around: a cube is 1
+_LANTERN_SIDES = 4  # fewer sides shine into some directions only
+_ASIDE = 0.3  # in extents: sides this far from the middle keep in what they send to it
+_SIMILAR = 1e-4  # how much the axes of a place may differ in length, and their cosines from 0
 Triangle = tuple[Vector, Vector, Vector]
 
 
@@ -138,6 +143,7 @@ class Glows:
     """The glows of one scene."""
 
     def __init__(self) -> None:
+        self._made: dict[Glow, list[tuple[Part, list[native.Light]]]] = {}  # in their own frames
         self._lights: list[tuple[Part, native.Light]] = []
         self._lit: dict[Subject, None] = {}
         self._dark: dict[Subject, None] = {}
@@ -148,10 +154,8 @@ class Glows:
         light), and a ball must not keep in the light in its middle."""
         hidden = 0
         self._dark.update(dict.fromkeys(glow.others))
-        for part in glow.parts:
-            sides = [[tuple(world @ p for p in t) for t in side] for side in part.sides]
-            made = _areas(sides, part.closed) or _point(sides, part.closed)
-            for light in made or ():
+        for part, made in self._placed(glow, world):
+            for light in made:
                 most = max(part.radiance)
                 color = tuple(value / most for value in part.radiance)
                 light = replace(light, name=name, color=color, power=light.power * most)
@@ -165,13 +169,38 @@ class Glows:
                 self._dark[part.material] = None
         return hidden
 
-    def lights(self, eye: Vector | None, problems: Problems) -> list[native.Light]:
-        """The strongest, and those that are small as the camera sees them."""
-        kept = []
+    def _placed(self, glow: Glow, world: Matrix) -> list[tuple[Part, list[native.Light]]]:
+        """The lights of radiance 1 of each part. What is placed often is fitted once, unless its
+        place distorts it."""
+        scale = _scale(world)
+        if scale is None:
+            return _fitted_parts(glow, world)
+        if glow not in self._made:
+            self._made[glow] = _fitted_parts(glow, Matrix())
+        turn = world.to_3x3()
+
+        def moved(light: native.Light) -> native.Light:
+            return replace(
+                light,
+                power=light.power * scale * scale,
+                position=tuple(world @ Vector(light.position)),
+                direction=tuple((turn @ Vector(light.direction)) / scale),
+                edge_u=tuple(turn @ Vector(light.edge_u)),
+                edge_v=tuple(turn @ Vector(light.edge_v)),
+                radius=light.radius * scale,
+            )
+
+        return [(part, list(map(moved, made))) for part, made in self._made[glow]]
+
+    def lights(
+        self, eye: Vector | None, problems: Problems, most: int = MOST_LIGHTS
+    ) -> list[native.Light]:
+        """The strongest, and those that are small as the camera sees them; at most so many."""
+        kept: list[native.Light] = []
         self._lights.sort(key=lambda pair: -pair[1].power)
         for part, light in self._lights:
             far = eye is None or (eye - Vector(light.position)).length > 2.0 * light.radius
-            if far and len(kept) < MOST_LIGHTS:
+            if far and len(kept) < most:
                 kept.append(light)
             elif max(part.radiance) > NAMED:
                 self._dark[part.material] = None
@@ -183,6 +212,83 @@ class Glows:
             text = f'Material "{name}": {text}; put a lamp in its place'
             problems.add(name, WARNING, "glow", text, "material", library)
         return kept
+
+
+def _scale(world: Matrix) -> float | None:
+    """The factor by which a place scales everything; None: it is another one along each axis."""
+    axes = [column.to_3d() for column in world.col[:3]]
+    lengths = [axis.length for axis in axes]
+    largest = max(lengths)
+    if not largest > 0.0 or not math.isfinite(largest):
+        return None
+    if min(lengths) < (1.0 - _SIMILAR) * largest:
+        return None
+    if any(abs(a.dot(b)) > _SIMILAR * largest**2 for a, b in combinations(axes, 2)):
+        return None
+    return largest
+
+
+def _fitted_parts(glow: Glow, world: Matrix) -> list[tuple[Part, list[native.Light]]]:
+    """The lights of radiance 1 of each part as it is placed; one for all parts of a lantern."""
+    found, lantern = [], []
+    for part in glow.parts:
+        sides = [[tuple(world @ p for p in t) for t in side] for side in part.sides]
+        made = _areas(sides, part.closed) or _point(sides, part.closed) or []
+        found.append((part, made))
+        if any(light.kind == native.LightKind.AREA for light in made):
+            lantern.append((part, sides))
+    if len({part.radiance for part, _ in lantern}) == 1:
+        light = _lantern([side for _, sides in lantern for side in sides])
+        if light is not None:
+            first, others = lantern[0][0], {part for part, _ in lantern[1:]}
+            return [
+                (part, [light] if part is first else made)
+                for part, made in found
+                if part not in others
+            ]
+    return found
+
+
+def _lantern(sides: list[list[Triangle]]) -> native.Light | None:
+    """The light of radiance 1 in the middle of sides that are all around it. None: they are few, or
+    rather in a plane or a row."""
+    if len(sides) < _LANTERN_SIDES:
+        return None
+    triangles = [t for side in sides for t in side]
+    middle = _center(triangles)
+    total, moments = 0.0, [[0.0] * 3 for _ in range(3)]
+    for triangle in triangles:
+        a, b, c = (p - middle for p in triangle)
+        weight = (b - a).cross(c - a).length / 24.0
+        total += 12.0 * weight
+        for p in (a, b, c, a + b + c):  # exact for squares of linear functions
+            for i in range(3):
+                for k in range(3):
+                    moments[i][k] += weight * p[i] * p[k]
+    least, largest = _ends(moments)
+    if not total > 0.0 or not math.isfinite(total) or least < _LANTERN**2 * largest:
+        return None
+    extent = math.sqrt(largest / total)
+    shines = 0.0
+    for side in sides:
+        area = sum((b - a).cross(c - a).length / 2.0 for a, b, c in side)
+        aside = abs(_normal(side[0]).dot(_center(side) - middle)) > _ASIDE * extent
+        shines += area if aside else 2.0 * area
+    return _point_of(middle, shines)
+
+
+def _ends(m: list[list[float]]) -> tuple[float, float]:
+    """The least and the largest eigenvalue of a symmetric matrix of 3 x 3."""
+    mean = (m[0][0] + m[1][1] + m[2][2]) / 3.0
+    off = m[0][1] ** 2 + m[0][2] ** 2 + m[1][2] ** 2
+    size = math.sqrt((sum((m[i][i] - mean) ** 2 for i in range(3)) + 2.0 * off) / 6.0)
+    if not size > 0.0:
+        return mean, mean
+    b = [[(m[i][k] - (mean if i == k else 0.0)) / size for k in range(3)] for i in range(3)]
+    half = Matrix(b).determinant() / 2.0
+    turn = math.acos(min(1.0, max(-1.0, half))) / 3.0
+    least = mean + 2.0 * size * math.cos(turn + 2.0 * math.pi / 3.0)
+    return least, mean + 2.0 * size * math.cos(turn)
 
 
 def _areas(sides: list[list[Triangle]], closed: bool) -> list[native.Light] | None:
@@ -263,15 +369,18 @@ def _point(sides: list[list[Triangle]], closed: bool) -> list[native.Light] | No
     volume = sum((a - center).dot((b - center).cross(c - center)) / 6.0 for a, b, c in triangles)
     if not area > 0.0 or 36.0 * math.pi * volume * volume < _ROUND * area**3:
         return None
-    return [
-        native.Light(
-            "",
-            native.LightKind.POINT,
-            power=math.pi * area,
-            position=tuple(center),
-            radius=math.sqrt(area / (4.0 * math.pi)),
-        )
-    ]
+    return [_point_of(center, area)]
+
+
+def _point_of(center: Vector, area: float) -> native.Light:
+    """The light of a convex body of radiance 1."""
+    return native.Light(
+        "",
+        native.LightKind.POINT,
+        power=math.pi * area,
+        position=tuple(center),
+        radius=math.sqrt(area / (4.0 * math.pi)),
+    )
 
 
 def _center(triangles: Iterable[Triangle]) -> Vector:

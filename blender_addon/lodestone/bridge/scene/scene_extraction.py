@@ -25,7 +25,7 @@ from ..motion.motion_sampling import Motion, Still
 from ..motion.shutter_motion import Moving
 from ..nodes.image_means import ImageMeans
 from ..world import scene_lights, world_background
-from . import collection_groups, scene_camera
+from . import collection_groups, glowing_faces, scene_camera
 from .leaf_objects import Leaf, Leaves, override_of
 from .material_users import Shown, Users
 from .model_parts import Parts
@@ -188,7 +188,8 @@ def surroundings(
     for light, matrix, name in found.lights:
         scene_lights.add(model, light, matrix, name, problems)
     eye = None if scene.camera is None else scene.camera.matrix_world.translation
-    for light in found.glows.lights(eye, problems):
+    most = max(0, glowing_faces.MOST_LIGHTS - len(found.lights))
+    for light in found.glows.lights(eye, problems, most):
         model.add_light(light)
     around = world_background.extract(model, scene.world, problems, images or ImageMeans())
     model.set_world(
