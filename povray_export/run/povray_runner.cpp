@@ -3,7 +3,9 @@
 
 #include "base/files.h"
 #include "povray_export/run/child_process.h"
+#include "povray_export/run/live_picture.h"
 #include "povray_export/run/povray_messages.h"
+#include "povray_export/run/state_file.h"
 
 #include <algorithm>
 #include <atomic>
@@ -14,6 +16,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <optional>
 #include <poll.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -34,6 +37,12 @@ constexpr double kGraceS = 0.5;
 /// The share of the progress bar for parsing.
 /// Taste: a larger value makes the bar jump in scenes that are parsed at once.
 constexpr double kParsePart = 0.15;
+/// The side in pixels of the first squares of a mosaic.
+/// Law: POV-Ray's blocks; larger squares would not come sooner.
+constexpr int kFirstSquare = 32;
+/// The side in pixels of its last squares.
+/// Taste: a smaller value looks finer and costs more: 8 is one pixel in 64, 4 one in 16.
+constexpr int kLastSquare = 8;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -221,10 +230,15 @@ std::vector<std::string> arguments_of(const RunOptions& options, const std::stri
         out.push_back(text("+H", options.height));
     if (options.threads > 0)
         out.push_back(text("+WT", options.threads));
+    if (options.mosaic) {
+        out.push_back(text("+SP", kFirstSquare));
+        out.push_back(text("+EP", kLastSquare));
+    }
     return out;
 }
 
-void show_progress(const PovrayMessages& messages, const Job& job) {
+/// `live`: the picture that is drawn into; null: only messages tell how far it is.
+void show_progress(const PovrayMessages& messages, const LivePicture* live, const Job& job) {
     if (messages.pixels == 0) {
         // The number of tokens to parse is not known: half of this part is a million of them.
         const auto tokens = static_cast<double>(messages.parsed_tokens);
@@ -232,8 +246,10 @@ void show_progress(const PovrayMessages& messages, const Job& job) {
         return;
     }
     job.stage(JobStage::Trace);
-    const double part =
-        static_cast<double>(messages.pixels_done) / static_cast<double>(messages.pixels);
+    // The messages count the pixels of every step of a mosaic from 0 again.
+    const uint64_t done = live != nullptr ? live->finished() : messages.pixels_done;
+    const uint64_t pixels = live != nullptr ? live->pixels() : messages.pixels;
+    const double part = static_cast<double>(done) / static_cast<double>(pixels);
     job.progress(kParsePart + (1 - kParsePart) * part);
 }
 
@@ -287,18 +303,27 @@ RunReport render_scene(const RunOptions& options, const Job& job) {
 
     const Clock::time_point start = Clock::now();
     const TemporaryPicture temporary(options.folder, extension);
+    std::optional<StateFile> drawn;
+    if (options.live != nullptr)
+        drawn.emplace(temporary.state, *options.live);
     PovrayMessages messages;
     RunReport report;
     PovrayProcess child(program, options.folder, arguments_of(options, program, temporary.name));
     do {
         if (job.cancelled()) {
             child.stop();
+            if (drawn)
+                drawn->read_rest();
             job.check();
         }
         report.peak_bytes = std::max(report.peak_bytes, child.peak_bytes());
         child.wait_for_text(messages);
-        show_progress(messages, job);
+        if (drawn)
+            drawn->read_some();
+        show_progress(messages, drawn && !drawn->broken() ? options.live : nullptr, job);
     } while (!child.ended());
+    if (drawn)
+        drawn->read_rest();
     child.read_text(messages);
     messages.finish();
     report.wall_s = seconds_since(start);

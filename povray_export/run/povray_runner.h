@@ -9,6 +9,8 @@
 
 namespace lodestone::povray {
 
+class LivePicture;
+
 /// The format of the picture.
 enum class OutputFormat : uint8_t {
     Exr = 0,  // linear, values above 1 kept
@@ -25,6 +27,12 @@ struct RunOptions {
     int threads = 0;  // 0: all threads
     OutputFormat output = OutputFormat::Exr;
     std::string output_name = {};  // plain ASCII, in the folder; "": picture.exr, .png or .ppm
+    // A picture for somebody who looks while it is drawn; its part is what the scene's settings
+    // draw. null: nobody looks.
+    LivePicture* live = nullptr;
+    // true: a mosaic is drawn first, for somebody who looks. It leaves the picture as it is, but for what lies
+    // outside a border, and but for gathered light, of which it gathers more.
+    bool mosaic = false;
 };
 
 /// The result of a run.

@@ -2,6 +2,7 @@
 // Guards running POV-Ray: its sentence when it fails, stopping it, and nothing left behind.
 #include "povray/povray_scenes.h"
 #include "povray_export/run/empty_scene.h"
+#include "povray_export/run/live_picture.h"
 #include "povray_export/run/povray_messages.h"
 
 #include <chrono>
@@ -317,6 +318,110 @@ TEST(PovrayRunner, CancellingEndsPovrayWithinASecond) {
     EXPECT_EQ(stage, static_cast<int32_t>(JobStage::Trace));
     EXPECT_EQ(files_in(folder), 2u);
     EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+}
+
+namespace {
+
+/// What was handed out of a live picture, put together, top row first.
+std::vector<LivePixel> put_together(LivePicture& live) {
+    const auto width = static_cast<size_t>(live.part().width);
+    std::vector<LivePixel> out(live.pixels());
+    std::vector<LivePixel> room(4096);
+    while (const auto where = live.take(false, room)) {
+        for (int y = 0; y < where->height; ++y) {
+            for (int x = 0; x < where->width; ++x)
+                out[static_cast<size_t>(where->top + y) * width +
+                    static_cast<size_t>(where->left + x)] =
+                    room[static_cast<size_t>(y) * static_cast<size_t>(where->width) +
+                         static_cast<size_t>(x)];
+        }
+    }
+    return out;
+}
+
+/// The largest relative difference of two pictures' values; those below 1/1000 count as that.
+double difference(const std::vector<LivePixel>& live, const image::Image& finished) {
+    double worst = live.size() == finished.size() ? 0 : 1e9;
+    for (size_t i = 0; i < std::min(live.size(), finished.size()); ++i) {
+        for (size_t c = 0; c < 4; ++c) {
+            const double expected = finished.pixels[4 * i + c];
+            worst = std::max(worst,
+                             std::abs(live[i][c] - expected) / std::max(1e-3, std::abs(expected)));
+        }
+    }
+    return worst;
+}
+
+const char* const kGlass =
+    "global_settings{assumed_gamma 1} camera{location <0,1,-4> look_at 0}\n"
+    "light_source{<5,8,-5> rgb 2 area_light 2*x,2*z,17,17} sphere{0,1 pigment{rgbt "
+    "<.9,.3,.1,.5>}}\n"
+    "box{<-3,-1,0>,<0,-.9,2> pigment{rgb <.2,.5,.1>} finish{ambient 4}}\n";
+
+}  // namespace
+
+TEST(PovrayRunner, TheLivePictureIsTheFinishedOne) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    const std::string sizes[] = {
+        "Width=100\nHeight=70\nOutput_Alpha=On\nAntialias=On\nAntialias_Threshold=0.1\n",
+        "Width=100\nHeight=70\nOutput_Alpha=Off\n",
+        "Width=100\nHeight=70\nOutput_Alpha=On\nStart_Column=21\nEnd_Column=90\nStart_Row=11\n"
+        "End_Row=50\n"};
+    for (const std::string& size : sizes) {
+        const bool border = size.find("Start") != std::string::npos;
+        const PixelRectangle part =
+            border ? PixelRectangle{20, 10, 70, 40} : PixelRectangle{0, 0, 100, 70};
+        const auto folder = scene_with("live", kGlass, size);
+        LivePicture live(part);
+        RunOptions options{.folder = folder, .threads = 2, .live = &live, .mosaic = true};
+        volatile int32_t cancel = 0;
+        volatile int32_t stage = 0;
+        volatile double fraction = 0;
+        const RunReport report = render_scene(options, Job(&cancel, &stage, &fraction));
+        EXPECT_EQ(live.finished(), live.pixels());
+        EXPECT_DOUBLE_EQ(fraction, 1);
+        const image::Image finished =
+            image::read_region(report.picture, {part.left, part.top, part.width, part.height});
+        // POV-Ray writes numbers of 11 bits into an EXR.
+        EXPECT_LT(difference(put_together(live), finished), 1.0 / 2048 + 1e-6) << size;
+        // Neither looking nor the mosaic changes a bit of it. (Outside a border it does.)
+        options.live = nullptr;
+        options.mosaic = false;
+        options.output_name = "plain.exr";
+        const image::Image plain = image::read_region(
+            render_scene(options).picture, {part.left, part.top, part.width, part.height});
+        EXPECT_EQ(plain.pixels, finished.pixels) << size;
+        EXPECT_EQ(files_in(folder), 4u);  // scene.pov, scene.ini and two pictures
+    }
+}
+
+TEST(PovrayRunner, WhatWasDrawnStaysWhenItIsCancelled) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    const auto folder = scene_with("live_cancel", kSlow, "Width=1920\nHeight=1080\nAntialias=On\n");
+    LivePicture live({0, 0, 1920, 1080});
+    volatile int32_t cancel = 0;
+    volatile int32_t stage = 0;
+    volatile double fraction = 0;
+    std::thread killer([&] {
+        for (int i = 0; i < 2000 && live.finished() == 0; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        cancel = 1;
+    });
+    const Error error = error_of([&] {
+        render_scene({.folder = folder, .threads = 2, .live = &live, .mosaic = false},
+                     Job(&cancel, &stage, &fraction));
+    });
+    killer.join();
+    EXPECT_EQ(error.status, Status::Cancelled);
+    EXPECT_GE(live.finished(), 1024u);
+    EXPECT_LT(live.finished(), live.pixels());
+    const auto pixels = put_together(live);
+    EXPECT_GT(std::count_if(pixels.begin(), pixels.end(),
+                            [](const LivePixel& pixel) { return pixel[3] > 0; }),
+              1000);
+    EXPECT_EQ(files_in(folder), 2u);
 }
 
 TEST(PovrayRunner, AnEmptySceneIsMeasuredOnceAndIsTheLeast) {
