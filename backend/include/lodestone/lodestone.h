@@ -1166,6 +1166,32 @@ typedef struct lds_povray_report {
 LDS_API lds_status lds_povray_run(const char* folder, const char* picture,
                                   const lds_povray_options* options, lds_job* job,
                                   lds_povray_report* out_report);
+/* A picture while POV-Ray draws it, for somebody who looks meanwhile: a mosaic of squares first, then
+   finished rectangles. */
+typedef struct lds_live_picture lds_live_picture;
+/* part int32[4]: left, top, width, height of what is drawn of the whole picture: the view's border,
+   else all of it. */
+LDS_API lds_status lds_live_picture_create(const int32_t part[4], lds_live_picture** out_picture);
+/* Not while a call draws into it. */
+LDS_API void lds_live_picture_destroy(lds_live_picture* picture);
+/* Hands out a rectangle that was drawn since it was handed out last, from any thread. Call it until
+   there is none.
+   bottom_up    1: rows and out_part count from the lowest row (Blender's order)
+   out_part     int32[4]: left, top (or bottom), width, height, within the part; width 0: none
+   out_pixels   float32[height][width][4]: linear RGBA, associated alpha, as lds_image_read_part
+                will read it from the finished picture
+   capacity     counts floats; room for 32 x 32 pixels is the least */
+LDS_API lds_status lds_live_picture_take(lds_live_picture* picture, int32_t bottom_up,
+                                         int32_t out_part[4], float* out_pixels, size_t capacity);
+/* The number of finished pixels: those of the mosaic do not count. */
+LDS_API lds_status lds_live_picture_finished(lds_live_picture* picture, uint64_t* out_pixels);
+/* Does what lds_povray_run does, and draws into `live` meanwhile; after a failure it has what was
+   drawn before.
+   With options.bounces there is no mosaic but the one that gathering light draws anyway: more of it
+   would gather more, and the finished picture would not be the one of lds_povray_run. */
+LDS_API lds_status lds_povray_run_live(const char* folder, const char* picture,
+                                       const lds_povray_options* options, lds_live_picture* live,
+                                       lds_job* job, lds_povray_report* out_report);
 /* peak_bytes of an empty picture of this size: subtract it to know what a scene costs. Measured by
    running POV-Ray, then remembered for the life of the process. */
 LDS_API lds_status lds_povray_empty_bytes(int32_t width, int32_t height, const char* program,

@@ -56,6 +56,7 @@ from .image import (
 )
 from .job import Job
 from .library import abi_version, library_path, rays_check, version
+from .live_picture import DrawnPart, LivePicture, povray_run_live
 from .measure import surface_inertia
 from .model import Model, texture
 from .options import (
@@ -94,6 +95,7 @@ __all__ = [
     "Criterion",
     "Cut",
     "Drawn",
+    "DrawnPart",
     "Extension",
     "FaceBuffers",
     "Image",
@@ -105,6 +107,7 @@ __all__ = [
     "LensShape",
     "Light",
     "LightKind",
+    "LivePicture",
     "LodestoneError",
     "LooseOptions",
     "MeasureOptions",
@@ -148,6 +151,7 @@ __all__ = [
     "povray_false_color",
     "povray_find",
     "povray_run",
+    "povray_run_live",
     "project_uvs",
     "rays_check",
     "records",

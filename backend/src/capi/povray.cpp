@@ -6,14 +6,21 @@
 #include "capi/handles.h"
 #include "capi/rays.h"
 #include "povray_export/run/empty_scene.h"
+#include "povray_export/run/live_picture.h"
 #include "povray_export/run/povray_runner.h"
 #include "povray_export/scene/scene_writer.h"
 #include "povray_export/texture/surface_finish.h"
 
 #include <cmath>
+#include <memory>
 
 using namespace lodestone;
 using namespace lodestone::capi;
+
+struct lds_live_picture {
+    explicit lds_live_picture(const povray::PixelRectangle& part) : picture(part) {}
+    povray::LivePicture picture;
+};
 
 namespace {
 
@@ -51,6 +58,31 @@ povray::Antialiasing antialiasing_of(const lds_povray_options& options) {
             fail(Status::InvalidArgument, "options.antialias is ", options.antialias,
                  "; 0 to 2 expected");
     }
+}
+
+povray::RunOptions run_options(const char* folder, const char* picture,
+                               const lds_povray_options& options) {
+    povray::RunOptions out;
+    out.folder = folder;
+    out.program = options.program == nullptr ? "" : options.program;
+    out.threads = options.threads;
+    out.output_name = picture;
+    const std::string ending = std::filesystem::path(picture).extension().string();
+    if (ending != ".exr" && ending != ".png")
+        fail(Status::InvalidArgument, "the picture '", picture, "' must end in .exr or .png");
+    out.output = ending == ".exr" ? povray::OutputFormat::Exr : povray::OutputFormat::Png;
+    return out;
+}
+
+void run(const povray::RunOptions& options, lds_job* job, lds_povray_report* out_report) {
+    const povray::RunReport report = povray::render_scene(options, job_of(job));
+    lds_povray_report out{};
+    out.exit_code = report.exit_code;
+    out.parse_cpu_s = report.parse_cpu_s;
+    out.trace_cpu_s = report.trace_cpu_s;
+    out.wall_s = report.wall_s;
+    out.peak_bytes = report.peak_bytes;
+    hand_out(out_report, out, "out_report");
 }
 
 }  // namespace
@@ -117,24 +149,64 @@ lds_status lds_povray_run(const char* folder, const char* picture,
         require(folder, "folder");
         require(picture, "picture");
         checked(out_report, "out_report");
+        run(run_options(folder, picture, checked(options, "options")), job, out_report);
+    });
+}
+
+lds_status lds_povray_run_live(const char* folder, const char* picture,
+                               const lds_povray_options* options, lds_live_picture* live,
+                               lds_job* job, lds_povray_report* out_report) {
+    return guard([&] {
+        require(folder, "folder");
+        require(picture, "picture");
+        require(live, "live");
+        checked(out_report, "out_report");
         const lds_povray_options& given = checked(options, "options");
-        povray::RunOptions wanted;
-        wanted.folder = folder;
-        wanted.program = given.program == nullptr ? "" : given.program;
-        wanted.threads = given.threads;
-        wanted.output_name = picture;
-        const std::string ending = std::filesystem::path(picture).extension().string();
-        if (ending != ".exr" && ending != ".png")
-            fail(Status::InvalidArgument, "the picture '", picture, "' must end in .exr or .png");
-        wanted.output = ending == ".exr" ? povray::OutputFormat::Exr : povray::OutputFormat::Png;
-        const povray::RunReport report = povray::render_scene(wanted, job_of(job));
-        lds_povray_report out{};
-        out.exit_code = report.exit_code;
-        out.parse_cpu_s = report.parse_cpu_s;
-        out.trace_cpu_s = report.trace_cpu_s;
-        out.wall_s = report.wall_s;
-        out.peak_bytes = report.peak_bytes;
-        hand_out(out_report, out, "out_report");
+        povray::RunOptions wanted = run_options(folder, picture, given);
+        wanted.live = &live->picture;
+        wanted.mosaic = given.bounces == 0;
+        run(wanted, job, out_report);
+    });
+}
+
+lds_status lds_live_picture_create(const int32_t part[4], lds_live_picture** out_picture) {
+    return guard([&] {
+        require(part, "part");
+        require(out_picture, "out_picture");
+        *out_picture = std::make_unique<lds_live_picture>(
+                           povray::PixelRectangle{part[0], part[1], part[2], part[3]})
+                           .release();
+    });
+}
+
+void lds_live_picture_destroy(lds_live_picture* picture) {
+    delete picture;
+}
+
+lds_status lds_live_picture_take(lds_live_picture* picture, int32_t bottom_up, int32_t out_part[4],
+                                 float* out_pixels, size_t capacity) {
+    return guard([&] {
+        require(picture, "picture");
+        require(out_part, "out_part");
+        require(out_pixels, "out_pixels");
+        static_assert(sizeof(povray::LivePixel) == 4 * sizeof(float));
+        auto* pixels = reinterpret_cast<povray::LivePixel*>(out_pixels);
+        const auto taken = picture->picture.take(bottom_up != 0, {pixels, capacity / 4});
+        const povray::PixelRectangle part = taken.value_or(povray::PixelRectangle{});
+        out_part[0] = part.left;
+        out_part[1] = part.top;
+        if (bottom_up != 0 && taken)
+            out_part[1] = picture->picture.part().height - part.top - part.height;
+        out_part[2] = part.width;
+        out_part[3] = part.height;
+    });
+}
+
+lds_status lds_live_picture_finished(lds_live_picture* picture, uint64_t* out_pixels) {
+    return guard([&] {
+        require(picture, "picture");
+        require(out_pixels, "out_pixels");
+        *out_pixels = picture->picture.finished();
     });
 }
 
