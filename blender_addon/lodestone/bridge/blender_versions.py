@@ -73,12 +73,22 @@ def color_attribute(mesh: Any, name: str) -> Any | None:
     return found if found is not None and found.domain in {"POINT", "CORNER"} else None
 
 
+class _PixelArray(array):
+    """Floats of RGBA pixels, as long as there are pixels: Blender 3.4 copies it at once."""
+
+    def __len__(self) -> int:
+        return super().__len__() // 4
+
+
 def set_pass(render_pass: Any, width: int, height: int, pixels: array) -> None:
     """Floats (linear RGBA, or one a pixel), bottom row first, into a render pass."""
     try:
         render_pass.rect.foreach_set(pixels)
-    except TypeError:  # 3.4 wants a tuple for each pixel
-        render_pass.rect = list(zip(*[iter(pixels)] * render_pass.channels))
+    except TypeError:  # 3.4 wants an item for each pixel
+        if render_pass.channels == 4 and len(pixels) == 4 * width * height:
+            render_pass.rect.foreach_set(_PixelArray("f", pixels))
+        else:
+            render_pass.rect = list(zip(*[iter(pixels)] * render_pass.channels))
 
 
 def principled_input(node: Any, *names: str) -> Any:
