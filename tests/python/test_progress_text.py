@@ -33,6 +33,10 @@ class Texts(unittest.TestCase):
         for size, text in ((12, "12 B"), (310e6, "310 MB"), (5.2e9, "5.2 GB")):
             self.assertEqual(progress_text.memory(size), text)
 
+    def test_triangles_that_are_drawn_and_placed(self):
+        self.assertEqual(progress_text.triangles(48500, 2900000), "48.5 k of 2.9 M triangles")
+        self.assertEqual(progress_text.triangles(812, 812), "812 triangles")
+
     def test_percent_of_nothing_is_nothing(self):
         self.assertEqual(progress_text.percent(1, 0), "0 %")
         self.assertEqual(progress_text.percent(1, 20), "5 %")
@@ -46,6 +50,16 @@ class StageClock(unittest.TestCase):
         clock.line("Parse", 13.0)
         line = clock.line("Trace", 24.0, 0.64)
         self.assertEqual(line, "Frame 7 | Export 0:03 | Parse 0:11 | Trace 64 % | 22.4 M triangles")
+
+    def test_between_two_stages_the_line_stays(self):
+        clock = progress_text.StageClock(1)
+        clock.line("Extract", 1.0)
+        self.assertEqual(clock.line("", 2.0), "Frame 1 | Extract")
+        self.assertEqual(clock.line("Levels", 3.0), "Frame 1 | Extract 0:02 | Levels")
+
+    def test_the_time_left_stands_beside_the_share(self):
+        line = progress_text.StageClock(1).line("Trace", 24.0, 0.64, 75.0)
+        self.assertEqual(line, "Frame 1 | Trace 64 %, about 1:15 left")
 
 
 if __name__ == "__main__":

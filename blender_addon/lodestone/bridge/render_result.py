@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A finished picture into Blender's render result."""
+"""A picture into Blender's render result: parts of it while it is drawn, and all of it."""
 
 import struct
 from array import array
@@ -55,15 +55,24 @@ def layer_of(depsgraph: Any) -> str:
 
 
 def hand_over(engine: Any, layer: str, image: Any, stamp: dict[str, str], depth: bool) -> None:
-    """Into the layer's combined pass; other passes stay empty. The result's corner is that of the
-    border. `stamp` becomes text in the saved file. `depth`: the layer asks for its depth, which is
-    told to be endless: Blender 3.4, drawing grease pencil, dies where there is none. An exception
-    between begin and end would take Blender down, so nothing but the pixels is done between them.
-    """
+    """A finished picture into the layer; other passes than the combined one stay empty. `stamp`
+    becomes text in the saved file. `depth`: the layer asks for its depth."""
+    show_part(engine, layer, native.DrawnPart(0, 0, image), depth)
+    whole = engine.get_result()  # merging the part above would have dropped its stamp
+    for field, value in stamp.items():
+        whole.stamp_data_add_field(field, value)
+
+
+def show_part(engine: Any, layer: str, part: Any, depth: bool) -> None:
+    """A native.DrawnPart into the layer's combined pass, counted from the border's corner, which is
+    the result's. `depth` is told to be endless: Blender 3.4, drawing grease pencil, dies where
+    there is none. An exception between begin and end would take Blender down, so nothing but the
+    pixels is done between them."""
+    left, bottom, image = part
     if depth:
         engine.add_pass("Depth", 1, "Z", layer=layer)
         far = array("f", [_ENDLESS]) * (image.width * image.height)
-    result = engine.begin_result(0, 0, image.width, image.height, layer=layer)
+    result = engine.begin_result(left, bottom, image.width, image.height, layer=layer)
     try:
         if depth:
             passed = result.layers[0].passes.find_by_name("Depth", "")
@@ -72,6 +81,3 @@ def hand_over(engine: Any, layer: str, image: Any, stamp: dict[str, str], depth:
         blender_versions.set_pass(combined, image.width, image.height, image.pixels)
     finally:
         engine.end_result(result)
-    whole = engine.get_result()  # merging the part above would have dropped its stamp
-    for field, value in stamp.items():
-        whole.stamp_data_add_field(field, value)

@@ -40,7 +40,8 @@ def percent(part: float, whole: float) -> str:
 
 
 class StageClock:
-    """Builds lines like `Frame 1 | Levels 0:42 | Parse 0:11 | Trace 64 % | 1.2 M of 22.4 M`."""
+    """Builds lines like `Frame 1 | Levels 0:42 | Parse 0:11 | Trace 64 %, about 0:20 left | 1.2 M
+    of 22.4 M triangles`."""
 
     def __init__(self, frame: int) -> None:
         self._parts = [f"Frame {frame}"]
@@ -48,15 +49,28 @@ class StageClock:
         self._since = 0.0
         self.tail = ""
 
-    def line(self, stage: str, now: float, fraction: float | None = None) -> str:
+    def line(
+        self, stage: str, now: float, fraction: float | None = None, left: float | None = None
+    ) -> str:
         """The line for a stage. `now` is in seconds of any steady clock; `fraction` is 0...1 of the
-        stage when it is known."""
+        stage and `left` the seconds that it still takes, when they are known. No stage: between
+        two of them."""
+        stage = stage or self._stage
         if stage != self._stage:
             if self._stage:
                 self._parts.append(f"{self._stage} {clock(now - self._since)}")
             self._stage, self._since = stage, now
         running = f"{stage} {percent(fraction, 1.0)}" if fraction else stage
+        if left is not None:
+            running += f", about {clock(left)} left"
         return " | ".join([*self._parts, running, *([self.tail] if self.tail else [])])
+
+
+def triangles(drawn: int, placed: int) -> str:
+    """The triangles that are drawn, of those that are placed: 48.5 k of 2.9 M triangles."""
+    if drawn >= placed:
+        return f"{count(drawn)} triangles"
+    return f"{count(drawn)} of {count(placed)} triangles"
 
 
 def building(done: int, total: int) -> str:

@@ -27,6 +27,7 @@ from ..core.native import lodestone_native as native
 from ..core.picture import compare_plan
 from ..core.picture.picture_maker import Settings, make_identities, make_picture
 from ..core.picture.render_folder import RenderFolder
+from ..core.picture.watched_picture import WatchedPicture
 from ..core.printable_text import printable, sentence, valid
 from ..core.problems import ERROR, Problems
 from ..core.session import kept_model
@@ -47,6 +48,7 @@ class RenderState:
     """What is kept from one picture of a render to the next; part of the session."""
 
     def __init__(self):
+        self.watched = not bpy.app.background  # somebody looks while a picture is drawn
         self.folder = RenderFolder()
         self.poses = {}  # by scene and view layer
         self.plan = None  # of Compare Levels, whose steps the pictures are
@@ -159,12 +161,14 @@ class _Run:
         self.work = Work()
         self.frame = self.scene.frame_current
         self.clock = progress_text.StageClock(self.frame)
+        self.layer = ""
+        self.picture = None  # a WatchedPicture, while POV-Ray may draw it
         self._shown = ""
 
     def render(self):
-        layer = render_result.layer_of(self.depsgraph)
+        self.layer = render_result.layer_of(self.depsgraph)
         if self.plan is not None and self.plan.step == compare_plan.DIFFERENCE:
-            self._show_difference(layer)
+            self._show_difference()
             return
         self._required()
         still = motion_file.read(self.store)
@@ -186,8 +190,8 @@ class _Run:
             shown = self.depsgraph.scene
             if totals.occurrences == 0 and not picture_requirements.something(shown, self.problems):
                 raise Refused("nothing_to_render", picture_requirements.NOTHING)
-            triangles = progress_text.count(totals.triangles_placed)
-            self.clock.tail = f"{triangles} triangles"
+            placed = totals.triangles_placed
+            self.clock.tail = progress_text.triangles(placed, placed)
             closing = None
             if levels and quality_settings.is_coarser_moving_dark(self.scene_settings):
                 closing = self._read_shutter(extraction, model, frame)
@@ -199,7 +203,7 @@ class _Run:
             border = (left, size[1] - bottom - part[1], *part)
             modifiers = self._modifiers(extraction, camera_object, closing)
             self.settings = replace(self.settings, border=border, modifiers=modifiers)
-            made, image = self.work.run(lambda: self._make(model, view, size), self._poll)
+            made, image = self._made_before_eyes(model, view, size, placed)
             self.problems.extend_native(model.problems())
             if levels and not self.engine.is_animation:
                 native.release_meshes(model)
@@ -209,7 +213,7 @@ class _Run:
                 )
                 addon_session().kept_models.put(name_of(self.scene), kept)
         self._remember(totals, made)
-        self._hand_over(layer, image)
+        self._hand_over(image)
         self._report()
 
     def _read_shutter(self, extraction, model, frame):
@@ -251,7 +255,31 @@ class _Run:
             raise Refused(first.code, first.message)
         return found
 
-    def _make(self, model, view, size):
+    def _made_before_eyes(self, model, view, size, placed):
+        """The picture and its image. What is drawn is shown meanwhile, and stays when it is
+        stopped."""
+
+        def chosen(triangles):
+            self.clock.tail = progress_text.triangles(triangles, placed)
+
+        def make():
+            return self._make(model, view, size, chosen)
+
+        if self.state.watched:
+            self.picture = WatchedPicture(self.settings.border)
+        try:
+            return self.work.run(make, self._poll)
+        except Stopped:
+            if self.picture is not None:
+                self._show_drawn(self.picture.rest())
+            raise
+
+    def _show_drawn(self, parts):
+        depth = self.depsgraph.view_layer_eval.use_pass_z
+        for part in parts:
+            render_result.show_part(self.engine, self.layer, part, depth)
+
+    def _make(self, model, view, size, chosen):
         """On the worker's thread: no bpy in here."""
         if self.settings.levels:
             try:
@@ -267,8 +295,11 @@ class _Run:
             kept = store_path.scene_folder(self.store)
             costs = addon_session().costs.of(self.store)
             with self.state.folder.use(kept, self.keep, self.frame) as folder:
+                live = None if self.picture is None else self.picture.live
                 made = make_picture(
-                    model, view, size, self.settings, folder.path, self.work.new_job, costs
+                    *(model, view, size, self.settings, folder.path, self.work.new_job, costs),
+                    live=live,
+                    chosen=chosen,
                 )
                 if self.plan is not None and not self.plan.has_this:
                     shown = make_identities(
@@ -280,16 +311,16 @@ class _Run:
             text = f"Cannot write the scene for POV-Ray: {error}"
             raise Refused("folder_unwritable", text) from None
 
-    def _show_difference(self, layer):
+    def _show_difference(self):
         """The third picture of Compare, of two that are there."""
         image = self.work.run(self.plan.compare, self._poll)
         left, bottom, *part = render_result.border(self.scene.render, image.width, image.height)
         part = render_result.cropped(image, left, bottom, *part)
-        self._hand_over(layer, part)
+        self._hand_over(part)
 
-    def _hand_over(self, layer, part):
+    def _hand_over(self, part):
         depth = self.depsgraph.view_layer_eval.use_pass_z
-        render_result.hand_over(self.engine, layer, part, self.settings.stamp(), depth)
+        render_result.hand_over(self.engine, self.layer, part, self.settings.stamp(), depth)
 
     def _build_options(self, view):
         """What property_groups.BUILD_ON_RENDER says."""
@@ -312,12 +343,15 @@ class _Run:
     def _poll(self):
         if self._stopped():
             self.work.stop()
-        stage, fraction = self.work.stage, self.work.fraction
+        stage, fraction, left = self.work.stage, self.work.fraction, None
         if self.work.library_stage == native.Stage.PARSE:
             stage = "Parse"
         start, share = _SHARES.get(stage, (0.0, 0.0))
         self.engine.update_progress(start + share * fraction)
-        self._show(self.clock.line(stage, time.monotonic(), fraction))
+        if self.picture is not None and stage == "Trace":
+            self._show_drawn(self.picture.news())
+            fraction, left = self.picture.finished, self.picture.seconds_left()
+        self._show(self.clock.line(stage, time.monotonic(), fraction, left))
 
     def _stopped(self):
         return _leaving or self.engine.test_break()

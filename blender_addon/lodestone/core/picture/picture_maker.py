@@ -13,6 +13,7 @@ from ..native import lodestone_native as native
 from . import cost_model, quality_tree, unseen_detail
 
 PICTURE = "picture.exr"
+_PICTURE_NAME = re.compile(r"\bi/[0-9a-f]{16}\.\w+")
 POVRAY_KINDS = sum(1 << kind for kind in DRAWN_KINDS)
 
 
@@ -174,14 +175,22 @@ def make_picture(
     folder: Path,
     new_job: Callable[[str], native.Job],
     costs: cost_model.StoreCosts | None = None,
+    live: native.LivePicture | None = None,
+    chosen: Callable[[int], None] = lambda triangles: None,
 ) -> Picture:
     """Cuts, exports into folder and renders folder/picture.exr. `new_job(stage)` is called before
     each long call and gives its Job. Raises LodestoneError; then no new picture is there.
-    `costs`: what it takes is predicted from, and remembered with, the last picture of a store."""
+    `costs`: what it takes is predicted from, and remembered with, the last picture of a store.
+    `live`: what is drawn into meanwhile. `chosen` is told how many triangles are drawn."""
     parts, in_use, work = _cut_and_export(model, camera, size, settings, folder, new_job("Export"))
     ratios = cost_model.Ratios() if costs is None else costs.read()
     predicted = cost_model.predict(work, ratios)
-    ran = native.povray_run(str(folder), PICTURE, settings.povray(), new_job("Trace"))
+    chosen(parts["cut"]["triangles"])
+    wanted, job = (str(folder), PICTURE, settings.povray()), new_job("Trace")
+    if live is None:
+        ran = native.povray_run(*wanted, job)
+    else:
+        ran = native.povray_run_live(*wanted, live, job)
     if costs is not None and not (settings.false_color or settings.covered_only):
         costs.write(cost_model.learn(work, ran, ratios))
     parts["povray"] = run_report.povray_part(ran)
