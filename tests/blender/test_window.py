@@ -9,6 +9,8 @@ import time
 import unittest
 from pathlib import Path
 
+import povray_state
+
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
@@ -116,7 +118,12 @@ class Window(unittest.TestCase):
     def test_escape_stops_povray_within_a_second(self):
         pid = self.folder / "pid"
         program = self.folder / "povray"
-        program.write_text(f"#!/bin/sh\necho $$ > {pid}\nexec sleep 60\n")
+        state = self.folder / "state"
+        state.write_bytes(povray_state.rectangle(0, 0, 31, 31, (0.0, 0.5, 0.0)))
+        program.write_text(
+            f"#!/bin/sh\nstem=${{2#+O}}\ncp {state} ${{stem%.*}}.pov-state\n"
+            f"echo Rendered 1024 of 2304 pixels\necho $$ > {pid}\nexec sleep 60\n"
+        )
         program.chmod(0o755)
         self.environment["LODESTONE_POVRAY"] = str(program)
         child = self.blender("window_render.py")

@@ -49,17 +49,23 @@ class RenderState:
 
     def __init__(self):
         self.watched = not bpy.app.background  # somebody looks while a picture is drawn
-        self.folder = RenderFolder()
+        self.folder = RenderFolder(lasting=self.watched)
         self.poses = {}  # by scene and view layer
         self.plan = None  # of Compare Levels, whose steps the pictures are
         self.hidden_pencil = hidden_grease_pencil.HiddenGreasePencil()
 
-    def close(self):
-        """A render begins or is over: what was read may be another thing in the next one."""
-        self.folder.close()
+    def end_render(self):
+        """A render begins or is over: what was read may be another thing in the next one. Files
+        that are written are not: their names are their content."""
+        self.folder.end_render()
         for held in self.poses.values():
             held.close()
         self.poses.clear()
+
+    def close(self):
+        """Another file is opened, or it is the end."""
+        self.end_render()
+        self.folder.close()
 
 
 @contextlib.contextmanager
@@ -426,6 +432,11 @@ class _Run:
 
 
 @bpy.app.handlers.persistent
+def _end_render(*_):
+    addon_session().part(RenderState).end_render()
+
+
+@bpy.app.handlers.persistent
 def _forget(*_):
     addon_session().part(RenderState).close()
 
@@ -446,7 +457,8 @@ def _show_pencil(*_):
 
 _ENDS = ("render_complete", "render_cancel")
 _HANDLERS = (
-    *((name, _forget) for name in ("render_init", *_ENDS, "load_pre")),
+    ("load_pre", _forget),
+    *((name, _end_render) for name in ("render_init", *_ENDS)),
     ("render_pre", _hide_pencil),
     *((name, _show_pencil) for name in ("render_post", *_ENDS)),
 )
@@ -455,7 +467,10 @@ _register, _unregister = bpy.utils.register_classes_factory((LODESTONE_RE_povray
 
 def register():
     global _leaving
-    if not render_job.take_back(_leave):
+    if render_job.take_back(_leave):
+        state = addon_session().part(RenderState)
+        state.folder.lasting = state.watched
+    else:
         _register()
     _leaving = False
     handlers.add(_HANDLERS)
@@ -465,6 +480,7 @@ def register():
 def unregister():
     global _leaving
     _leaving = True
+    addon_session().part(RenderState).folder.lasting = False
     atexit.unregister(_forget)
     handlers.remove(_HANDLERS)
     render_job.when_none_runs(_leave)

@@ -2,6 +2,9 @@
 """The way from a built model and a camera to a picture: cut, export, POV-Ray. F12 and batch share
 this."""
 
+import contextlib
+import itertools
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
@@ -225,20 +228,32 @@ def make_identities(
 
 
 def used_files(folder: Path) -> set[str]:
-    """Names of the representations that the scene in a folder includes."""
+    """The representations that the scene in a folder includes, and all pictures that are shown:
+    r/..., i/..."""
     found = set()
     with open(folder / "scene.pov", encoding="utf-8", errors="replace") as lines:
         for line in lines:
             if line.startswith('#include "r/'):
-                found.add(line[len('#include "r/') :].rstrip().rstrip('"'))
+                found.add(line[len('#include "') :].rstrip().rstrip('"'))
+            found.update(_PICTURE_NAME.findall(line))
+    for name in [name for name in found if name.startswith("r/")]:
+        with contextlib.suppress(OSError):
+            found |= _pictures_of(folder / name)
     return found
 
 
+def _pictures_of(representation: Path) -> set[str]:
+    """The pictures that a representation lists in its first lines."""
+    with open(representation, encoding="utf-8", errors="replace") as lines:
+        listed = itertools.takewhile(lambda line: line.startswith("// "), lines)
+        return {name for line in listed for name in _PICTURE_NAME.findall(line)}
+
+
 def remove_others(folder: Path, used: set[str]) -> None:
-    """Removes the representations that no scene of the frame used: what deforms is written anew in
-    every frame, and a long animation must not fill the disk."""
-    for path in (folder / "r").glob("*.inc"):
-        if path.name not in used:
+    """Removes the representations and pictures that no scene of the frame used: what deforms is
+    written anew in every frame, and a long animation must not fill the disk."""
+    for path in [*(folder / "r").glob("*.inc"), *(folder / "i").glob("*.*")]:
+        if f"{path.parent.name}/{path.name}" not in used:
             path.unlink(missing_ok=True)
 
 
