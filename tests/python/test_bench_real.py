@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Guards the arithmetic of the bench beside Cycles: differences, brightness, its table, its skips."""
+"""Guards the arithmetic of the bench beside Cycles: differences, brightness, table, skips."""
 
 import sys
 import tempfile

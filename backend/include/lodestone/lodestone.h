@@ -1122,7 +1122,7 @@ typedef struct lds_povray_options {
                              with OFF 12, with REFERENCE 64 */
     double shadow_error;  /* pixels: a penumbra narrower than this is drawn sharp; usual the view's
                              pixel_error */
-    double light_error;   /* replaces the view's Pixel Error where lamps are left out, or joined into
+    double light_error; /* replaces the view's Pixel Error where lamps are left out, or joined into
                              lights that stand for several: on average a point is off by about as
                              many 255ths, and always by up to 1/1024 of its light (a view of Pixel
                              Error 0); 0: every lamp lights everything, as it is; negative (usual):

@@ -47,7 +47,7 @@ Image read_region(const std::filesystem::path& path, const ImageRegion& part);
 /// Writes 8 bits a channel, RGB when every alpha is 1, else RGBA; a linear image is encoded first.
 /// The file is written whole or not at all.
 void write_png(const std::filesystem::path& path, const Image& image);
-/// What is spared in a PNG file.
+/// The thing that is spared when a PNG file is made.
 enum class PngEffort : uint8_t {
     Small,  // bytes: for files that are kept
     Quick,  // time: a quarter of it for a file a fifth larger, which one picture reads

@@ -91,6 +91,7 @@ PictureFacts facts_of(const Picture& picture) {
 
 /// decode_srgb(), whose values for 8 bits, which nearly all pictures have, are looked up.
 float decode_srgb_texel(float encoded) {
+    // Law: decode_srgb() of each byte.
     static const std::array<float, 256> kOfByte = [] {
         std::array<float, 256> out{};
         for (size_t i = 0; i < out.size(); ++i)
