@@ -309,8 +309,9 @@ private:
                     {includes_.at(use.file).representation, use.world, hidden_in_plan(use)});
         }
         light::LightDemands demands;
-        demands.grids = {options_.light_error.value_or(view_.pixel_error), shading_.shadow_error,
-                         light_sampling().rays};
+        demands.grids.pixel_error = options_.light_error.value_or(view_.pixel_error);
+        demands.grids.shadow_error = shading_.shadow_error;
+        demands.grids.rays = light_sampling().rays;
         demands.bounces = shading_.bounces;
         // Where light is gathered, walls shadow a sky.
         if (shading_.bounces == 0)

@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/parallel.h"
+#include "choose/criterion.h"
 #include "light/light_arrival.h"
 #include "light/penumbra.h"
 
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lodestone::light {
 namespace {
@@ -64,8 +66,10 @@ public:
     GridNeed(const Light& light, const View& view, const GridDemands& demands)
         : light_(light),
           view_(view),
+          extent_(extent_of(light)),
           narrowest_(std::max(kLeastPenumbra, demands.shadow_error)),
-          step_(std::max(1.0, demands.pixel_error)) {}
+          step_(std::max(1.0, demands.pixel_error)),
+          apart_(demands.apart) {}
 
     void add(const LitPoint& point, const glm::dvec3& all, const glm::dvec3& part) {
         const double steps = display_steps(all, part) / step_;
@@ -73,8 +77,16 @@ public:
         penumbra_ = std::max(penumbra_, std::min(pixels, steps));
         // The middles of n parts of a width w at the distance d give the light of all of it to
         // about (w / (n d))^2 / 4 of it.
-        const double away = std::max(glm::length(light_.position - point.position), 1e-9);
-        spread_ = std::max(spread_, 2 * extent_of(light_) / away * std::sqrt(steps / 2));
+        const double distance = std::max(glm::length(light_.position - point.position), 1e-9);
+        const double z = glm::length(point.position - view_.camera.position);
+        const double between = apart_ * choose::pixel_size(view_, z);
+        const double nearest = between < 2 * extent_ ? distance - between : distance;
+        // So near to a lamp each part of it counts, however much light there is besides.
+        if (nearest < extent_ / 2)
+            spread_ = std::numeric_limits<double>::infinity();
+        else
+            spread_ = std::max(spread_,
+                               2 * extent_ * distance / (nearest * nearest) * std::sqrt(steps / 2));
     }
 
     LampGrid grid(int most) const {
@@ -90,8 +102,10 @@ public:
 private:
     const Light& light_;
     const View& view_;
+    double extent_;
     double narrowest_;
     double step_;
+    double apart_;
     double penumbra_ = 0;
     double spread_ = 0;
 };

@@ -20,6 +20,7 @@ struct GridDemands {
     double pixel_error = 0;   // steps of an 8-bit display
     double shadow_error = 0;  // pixels: narrower penumbrae are sharp
     int rays = 17;            // along the edge of a large lamp, at most; 1: all shadows are sharp
+    double apart = 0;         // pixels between points; what lies between may be nearer to a lamp
 };
 
 /// The grid by which a light is sampled where nothing is known of what it lights.

@@ -36,6 +36,42 @@ double in_spread(const Light& area, double cosine) {
     return norm * std::sin(s - x) / (std::sin(s) * std::max(1e-9, std::cos(x)));
 }
 
+/// The light of an area of 1 watt, in as many parts as it is near: from its middle alone, what is
+/// beside a window's frame would get nothing of the window.
+double from_area(const Light& area, const glm::dvec3& point, const glm::dvec3& normal) {
+    // The parts along an edge, for each extent over the distance.
+    // Taste: more are nearer to all of the area, more slowly.
+    constexpr double kPartsNear = 6;
+    // The most parts along an edge.
+    // Taste: these tell whether a lamp matters, and need not be exact.
+    constexpr double kMostParts = 8;
+    const double away = glm::length(area.position - point);
+    const auto parts = static_cast<int>(std::clamp(
+        std::floor(kPartsNear * extent_of(area) / std::max(away, 1e-9)), 1.0, kMostParts));
+    const double size =
+        glm::length(glm::cross(area.edge_u, area.edge_v)) * (area.round ? kPi / 4 : 1);
+    const double part_size = size / (parts * parts);
+    const glm::dvec3 out = glm::normalize(area.direction);
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < parts * parts; ++i) {
+        const double u = (i % parts + 0.5) / parts - 0.5;
+        const double v = (i / parts + 0.5) / parts - 0.5;
+        if (area.round && u * u + v * v > 0.25)
+            continue;
+        ++count;
+        const glm::dvec3 way = area.position + u * area.edge_u + v * area.edge_v - point;
+        const double square = glm::dot(way, way);
+        const double distance = std::sqrt(square);
+        const double facing = glm::dot(way, normal);
+        const double sent = -glm::dot(way, out) / std::max(distance, 1e-300);
+        if (facing > 0 && sent > 0)
+            sum += facing / distance * sent * in_spread(area, sent) /
+                   (4 * kPi * (square + part_size / kPi));
+    }
+    return sum / std::max(count, 1);
+}
+
 }  // namespace
 
 glm::dvec3 energy_of(const Light& light) {
@@ -64,6 +100,8 @@ bool is_lamp(const Light& light) {
 
 glm::dvec3 arriving_radiance(const Light& light, const glm::dvec3& point,
                              const glm::dvec3& normal) {
+    if (light.kind == LightKind::Area)
+        return energy_of(light) * from_area(light, point, normal);
     const glm::dvec3 way = light.position - point;
     const double square = glm::dot(way, way);
     const double distance = std::sqrt(square);
@@ -77,13 +115,8 @@ glm::dvec3 arriving_radiance(const Light& light, const glm::dvec3& point,
     const double sent = -glm::dot(way, glm::normalize(light.direction)) / distance;
     if (!(sent > 0))
         return glm::dvec3(0.0);
-    if (light.kind == LightKind::Spot)
-        return energy_of(light) *
-               (cosine * sent * in_cone(light, sent) / (4 * kPi * kPi * (square + r * r + 1e-9)));
-    const double size =
-        glm::length(glm::cross(light.edge_u, light.edge_v)) * (light.round ? kPi / 4 : 1);
     return energy_of(light) *
-           (cosine * sent * in_spread(light, sent) / (4 * kPi * (square + size / kPi)));
+           (cosine * sent * in_cone(light, sent) / (4 * kPi * kPi * (square + r * r + 1e-9)));
 }
 
 double display_step(double radiance) {

@@ -16,7 +16,8 @@ double extent_of(const Light& light);
 bool is_lamp(const Light& light);
 
 /// The light of an unhidden lamp that a matte white surface facing `normal` (unit) sends back
-/// (linear radiance). The lamp counts as if all of it were at its middle.
+/// (linear radiance). A lamp counts as if all of it were at its middle, an area that is near as a
+/// few parts.
 glm::dvec3 arriving_radiance(const Light& light, const glm::dvec3& point, const glm::dvec3& normal);
 
 /// The change of linear radiance that one step of an 8-bit display shows at this radiance.

@@ -231,8 +231,10 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     const LightRegions regions = make_light_regions(bounds, divisible, weights, shares, points);
     lend_lit_points(sightings, regions, points, shares);
     const LightCut cut = cut_lights(tree, points, shares, regions.count, reaches, pixel_error, job);
+    GridDemands finely = demands.grids;
+    finely.apart = view.width / static_cast<double>(grid.columns);
     const std::vector<std::vector<LampGrid>> grids =
-        fit_lamp_grids(tree, cut, points, shares, view, demands.grids, job);
+        fit_lamp_grids(tree, cut, points, shares, view, finely, job);
     // Added points look at corners: the mean is that of the evenly spread ones.
     return plan_of({tree, cut, grids}, std::span(points).first(even > 0 ? even : points.size()),
                    regions, drawn.size());

@@ -99,13 +99,13 @@ TEST(LampGrids, RoughPicturesHaveFewerRaysAndNoneHasMoreThanAsked) {
     const Light light = panel(0.2, 10);
     int before = 9;
     for (const double error : {0.0, 1.0, 4.0, 16.0, 64.0}) {
-        const int rays = grid_of(light, floor_at(0, 0.1), {error, error, 17}).rays;
+        const int rays = grid_of(light, floor_at(0, 0.1), {error, error, 17, 0}).rays;
         EXPECT_LE(rays, before);
         before = rays;
     }
     EXPECT_LT(before, 9);
-    EXPECT_LE(grid_of(light, floor_at(0, 0), {0, 0, 5}).rays, 3);
-    EXPECT_EQ(grid_of(light, floor_at(0, 0), {0, 0, 1}).rays, 1);
+    EXPECT_LE(grid_of(light, floor_at(0, 0), {0, 0, 5, 0}).rays, 3);
+    EXPECT_EQ(grid_of(light, floor_at(0, 0), {0, 0, 1, 0}).rays, 1);
 }
 
 TEST(LampGrids, ASmallLampLightsAsAWhole) {
@@ -113,4 +113,15 @@ TEST(LampGrids, ASmallLampLightsAsAWhole) {
     EXPECT_GT(small.rays, 1);
     EXPECT_FALSE(small.parts);
     EXPECT_TRUE(grid_of(panel(2, 100), floor_at(0, 0)).parts);
+}
+
+// Frames of windows were dark: points lay a cell beside them, from where a window is small.
+TEST(LampGrids, WhatLiesBetweenPointsAndALampIsNearIt) {
+    const Light light = panel(1, 0.3);
+    const std::vector<LitPoint> points = floor_at(2, 0.5);
+    GridDemands demands;
+    EXPECT_LT(grid_of(light, points, demands).rays, 9);
+    demands.apart = 640.0 * 0.3;                                   // 1.8 m at the floor
+    EXPECT_LT(grid_of(panel(0.1, 0.3), points, demands).rays, 9);  // too small to be seen so near
+    EXPECT_EQ(grid_of(panel(3, 0.3), points, demands), (LampGrid{9, true}));
 }
