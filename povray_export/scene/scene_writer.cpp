@@ -25,6 +25,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 
 namespace lodestone::povray {
@@ -323,7 +324,29 @@ private:
                                                    demands, problems_, job_);
         if (!plan.empty())
             report_.lights_each = plan.lights_each;
+        name_slow_lamps(plan);
         return plan;
+    }
+
+    /// Names lamps that make a picture slow.
+    void name_slow_lamps(const light::LightPlan& plan) {
+        // The shadow rays to lamps from a point, on average.
+        // Taste: with fewer, other things take most of the time.
+        constexpr double kMany = 100;
+        if (!(plan.shadow_rays >= kMany))
+            return;
+        std::set<uint32_t> soft;
+        for (const std::vector<light::GroupLight>& group : plan.groups) {
+            for (const light::GroupLight& one : group) {
+                if (one.grid.rays > 1)
+                    soft.insert(one.light);
+            }
+        }
+        problems_.push_back(
+            {"", Severity::Info, "slow_lamps",
+             text(soft.size(), " lamps with soft shadows: from each point of the picture about ",
+                  std::lround(plan.shadow_rays),
+                  " shadow rays go to lamps; fewer Area Samples or larger Lights take less time")});
     }
 
     /// The text of everything that is drawn, with the lights of its group around it.

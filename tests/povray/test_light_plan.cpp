@@ -136,6 +136,25 @@ TEST_F(LightPlanTest, ALampThatMattersToNothingIsNotWritten) {
     EXPECT_EQ(count_of(read_file(options.folder / "scene.pov"), "fade_power"), 1u);
 }
 
+TEST_F(LightPlanTest, LampsThatMakeAPictureSlowAreNamed) {
+    Builder builder;
+    add_rooms(builder);
+    for (Light& lamp : builder.model.lights)
+        lamp.radius = 0.3;
+    Problems problems;
+    ExportOptions options = into("slow");
+    scenes::write(builder.finish(), from_above(0), options, problems);
+    EXPECT_TRUE(problems.empty());  // without antialiasing shadows are sharp
+    options.antialiasing = Antialiasing::Final;
+    View view = from_above(0);
+    view.width *= 4;
+    view.height *= 4;
+    scenes::write(builder.model, view, options, problems);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].code, "slow_lamps");
+    EXPECT_NE(problems[0].message.find("24 lamps with soft shadows"), std::string::npos);
+}
+
 // One mesh of a ground got the grids of all lamps near it everywhere.
 TEST_F(LightPlanTest, AGroundIsCutWhereTheLightOfALampEnds) {
     Builder builder;
