@@ -18,9 +18,12 @@ namespace {
 // The points for each pixel.
 // Taste: more miss fewer small patches of light, more slowly.
 constexpr double kShare = 0.05;
-// The most points for each pixel.
+// The most points for each pixel, in pictures that have more than the fewest points of rooms.
 // Taste: the looks at small pictures add points where these are too few.
 constexpr double kMostShare = 0.25;
+// The fewest points that still distinguish a dozen rooms.
+// Fitted: by a row of 12 rooms in 96 x 24 pixels (tests/povray/test_radiosity.cpp).
+constexpr double kFewRoomPoints = 3000;
 // The most rays, which are points times lamps.
 // Taste: more keep the points dense with many lamps, more slowly.
 constexpr double kRays = 2e7;
@@ -192,7 +195,8 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     }
     const LitScene scene(model, renderer, drawn, job);
     const double pixels = static_cast<double>(view.width) * view.height;
-    const double wanted = std::max(kShare * pixels, std::min(kRoomPoints, kMostShare * pixels));
+    const double wanted =
+        std::max(kShare * pixels, std::clamp(kMostShare * pixels, kFewRoomPoints, kRoomPoints));
     const double count = std::clamp(std::min(wanted, kRays / static_cast<double>(lamps)),
                                     kFewestPoints, kMostPoints);
     const int bounces = std::clamp(demands.bounces, 0, kMostHanded);
