@@ -42,6 +42,9 @@ constexpr int kMostHanded = 2;
 // The most lamps.
 // Taste: more take time that no picture is worth.
 constexpr size_t kMostLamps = 20000;
+// The fewest lamps that are named when they cannot be looked through.
+// Taste: fewer take little time.
+constexpr size_t kManyLamps = 8;
 // The most distinct triangles.
 // Taste: each takes 130 bytes while lights are chosen.
 constexpr uint64_t kMostTriangles = 2'000'000;
@@ -187,10 +190,11 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
         drawn.empty() || !ray::available())
         return {};
     if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
-        problems.push_back({"", Severity::Info, "lights_as_they_are",
-                            text("all ", lamps,
-                                 " lamps light everything: there are more of them, or of "
-                                 "triangles, than can be looked through")});
+        if (lamps >= kManyLamps)
+            problems.push_back({"", Severity::Info, "lights_as_they_are",
+                                text("all ", lamps,
+                                     " lamps light everything: there are more of them, or of "
+                                     "triangles, than can be looked through")});
         return {};
     }
     const LitScene scene(model, renderer, drawn, job);
