@@ -196,7 +196,7 @@ TEST_F(PovrayRenderRadiosity, WhatTheCameraDoesNotSeeIsLitByItsOwnLampsToo) {
         lamp.position = {2 * i + 1, 0, 2.2};
         builder.model.lights.push_back(lamp);
     }
-    View view = scenes::above(192, 48);
+    View view = scenes::above(96, 24);
     view.camera.position = {0, -20, 1};
     view.camera.direction = {0, 1, 0};
     view.camera.right = {24, 0, 0};

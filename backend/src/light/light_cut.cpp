@@ -87,7 +87,7 @@ private:
     /// A lamp that may light the region: the light it sends by each point.
     struct LampColumn {
         std::vector<glm::vec3> sent;
-        /// What it might send, if it shone wherever it reaches a point beside.
+        /// The light that it might send, if it shone wherever it reaches a point beside.
         std::vector<glm::vec3> possible;
     };
     struct OpenLight {
@@ -129,7 +129,7 @@ private:
             reaching_[i] = node.leaf() ? column_[i] != kNoLight
                                        : reaching_[node.left] != 0 || reaching_[node.right] != 0;
         }
-        // What sums of the light of lamps are exact to, also where all of it is hidden.
+        // The share to which sums of the light of lamps are exact, also where all of it is hidden.
         // Law: double precision, with a large margin.
         constexpr double kExactSum = 1e-9;
         for (size_t k = 0; k < members_.size(); ++k) {
@@ -187,7 +187,7 @@ private:
         return out;
     }
 
-    /// What is missed at each point, at most, without the lamps of a node.
+    /// The light that is missed at each point, at most, without the lamps of a node.
     std::vector<glm::dvec3> missed(uint32_t node) const {
         std::vector<glm::dvec3> out(members_.size(), glm::dvec3(0.0));
         for (const uint32_t lamp : tree_.lamps(node)) {

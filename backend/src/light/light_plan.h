@@ -62,7 +62,7 @@ struct LightPlan {
     bool empty() const { return groups.empty(); }
 };
 
-/// What a plan is made for, besides the view.
+/// The demands that a plan meets, besides the view.
 struct LightDemands {
     GridDemands grids;              // with the Pixel Error of lights
     int bounces = 0;                // how often light goes from surface to surface
