@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Night scenes for bench_real.py, made inside Blender: a street of 400 lamps, a Christmas tree of
-glowing balls, a hotel whose windows glow. Each has the cameras near, far and over."""
+glowing balls, a hotel whose windows glow. Each has the cameras CamNear, CamFar and CamOver."""
 
 import math
 import random
@@ -79,13 +79,14 @@ def _begin(sky):
 def _cameras(views):
     """{name: (from, at)}; the first is the scene's."""
     for name, (eye, at) in views.items():
+        name = f"Cam{name.title()}"
         camera = bpy.data.objects.new(name, bpy.data.cameras.new(name))
         camera.location = eye
         way = Vector(at) - Vector(eye)
         camera.rotation_euler = way.to_track_quat("-Z", "Y").to_euler()
         camera.data.clip_end = 5000
         bpy.context.scene.collection.objects.link(camera)
-    bpy.context.scene.camera = bpy.data.objects[next(iter(views))]
+    bpy.context.scene.camera = bpy.data.objects[f"Cam{next(iter(views)).title()}"]
 
 
 def street_lamps():
