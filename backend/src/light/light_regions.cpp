@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <numeric>
 
 namespace lodestone::light {
@@ -25,6 +26,15 @@ constexpr double kFewRays = 6;
 // The most shadow rays that a cut may leave, in parts of those at all points.
 // Taste: a larger share cuts more often for less.
 constexpr double kWorthCutting = 0.8;
+// The shadow rays to the lamps of a box above which it is cut although all of them reach all of it.
+// Taste: fewer lamps have fewer far ones that others could stand for.
+constexpr double kManyRays = 100;
+// The points of a box above which it is.
+// Taste: the lights of smaller ones are chosen by few points.
+constexpr size_t kManyPoints = 128;
+// The most boxes of one thing that are cut so.
+// Taste: more have fewer lights each, and are more clipped copies in POV-Ray.
+constexpr size_t kEvenPieces = 32;
 // The widest gaps between points along an axis that are tried.
 // Taste: more find better cuts, more slowly.
 constexpr size_t kGaps = 12;
@@ -229,6 +239,27 @@ private:
         return best;
     }
 
+    /// The plane with half of the points on each side, across their longest extent.
+    SplitPlane middle_plane(const std::vector<uint32_t>& points, double size) const {
+        Box3 box;
+        for (const uint32_t point : points)
+            box.add(points_[point].position);
+        SplitPlane plane;
+        plane.cost = std::numeric_limits<double>::infinity();
+        for (int axis = 1; axis < 3; ++axis) {
+            if (box.size()[axis] > box.size()[plane.axis])
+                plane.axis = axis;
+        }
+        std::vector<double> places;
+        for (const uint32_t point : points)
+            places.push_back(points_[point].position[plane.axis]);
+        std::sort(places.begin(), places.end());
+        const size_t middle = places.size() / 2;
+        if (places[middle] - places[middle - 1] > kNarrow * size)
+            plane = {0, plane.axis, (places[middle] + places[middle - 1]) / 2};
+        return plane;
+    }
+
     void cut(uint32_t thing, const std::vector<uint32_t>& points, bool divisible,
              std::vector<LitPiece>& out) {
         RegionPart whole;
@@ -250,8 +281,17 @@ private:
                 done.push_back(std::move(part));
                 continue;
             }
-            const SplitPlane plane = best_plane(part.points, size);
-            if (!(plane.cost <= kWorthCutting * static_cast<double>(part.points.size()) * rays)) {
+            SplitPlane plane = best_plane(part.points, size);
+            const bool worth =
+                plane.cost <= kWorthCutting * static_cast<double>(part.points.size()) * rays;
+            // Where very many lamps shine everywhere, each box has few near lamps of its own, and
+            // few lights for the others.
+            if (!worth && rays > kManyRays && part.points.size() > kManyPoints &&
+                open.size() + done.size() + 2 <= kEvenPieces)
+                plane = middle_plane(part.points, size);
+            else if (!worth)
+                plane.cost = std::numeric_limits<double>::infinity();
+            if (!(plane.cost < std::numeric_limits<double>::infinity())) {
                 done.push_back(std::move(part));
                 continue;
             }

@@ -17,7 +17,8 @@ inline constexpr uint32_t kNoRegion = ~uint32_t{0};
 /// Sets the regions of points. `points[i].region` is the index of the thing that the point lies on,
 /// and becomes its region. Things with many points are regions of their own, those with few join
 /// their neighbors. A thing that `divisible` allows is cut where that makes shorter lists of lamps
-/// for its points (where the light of lamps ends, too), into at most 128 boxes that fill its bound.
+/// for its points (where the light of lamps ends, too), into at most 128 boxes that fill its bound;
+/// where very many lamps light all of it, into at most 32.
 /// `weights`: the shadow rays to each lamp.
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
                                 std::span<const double> weights, const LightShares& shares,
