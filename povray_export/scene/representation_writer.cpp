@@ -10,7 +10,7 @@ namespace {
 // The version of the text: raised whenever the text for the same input changes, for files are found
 // again by their name alone.
 // Law: part of every file's hash.
-constexpr uint32_t kWriterVersion = 3;
+constexpr uint32_t kWriterVersion = 4;
 
 /// The text of one solid; nothing for one without size.
 std::string solid_text(const Model& model, const Representation& representation, const Solid& solid,
@@ -61,7 +61,8 @@ public:
             return mesh_text(mesh, nullptr, identifier_, job_);
         const MeshTextures textures(model_, representation_, options_, pictures_, job_);
         const char* left_out = textures.bumps_left_out() ? kBumpsLeftOut : "";
-        return mesh_text(mesh, &textures, identifier_, job_, pictures_.declarations() + left_out);
+        return mesh_text(mesh, &textures, identifier_, job_,
+                         pictures_.file_comments() + left_out + pictures_.declarations());
     }
 
     std::string operator()(const Solid& solid) const {

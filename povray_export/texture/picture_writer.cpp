@@ -268,7 +268,7 @@ std::string PictureWriter::pigment(const Texture& texture, PigmentContent conten
         (texture.interpolation == TextureInterpolation::Linear ? " interpolate 2" : "") +
         (content == PigmentContent::Filter ? " filter all 1" : "") + (repeats ? "}" : " once}");
     const std::string identifier = "LDS_I_" + hex16(Hasher().text(image).result());
-    declared_[identifier] = image;
+    declared_[identifier] = "pigment{" + image + '}';
     std::string out = identifier;
     if (!repeats && leaves(texture, range)) {
         switch (texture.extension) {
@@ -289,18 +289,29 @@ std::string PictureWriter::pigment(const Texture& texture, PigmentContent conten
     return out + mapping(texture);
 }
 
-std::string PictureWriter::declarations() const {
+std::string PictureWriter::layered(const std::string& layers) {
+    const std::string identifier = "LDS_T_" + hex16(Hasher().text(layers).result());
+    declared_[identifier] = layers;  // behind all images, which begin with LDS_I_
+    return "texture{" + identifier + '}';
+}
+
+std::string PictureWriter::file_comments() const {
     std::string out;
     for (const auto& [name, file] : files_)
         out += "// " + name + '\n';
-    for (const auto& [identifier, inside] : declared_)
+    return out;
+}
+
+std::string PictureWriter::declarations() const {
+    std::string out;
+    for (const auto& [identifier, value] : declared_)
         out.append("#ifndef(")
             .append(identifier)
             .append(") #declare ")
             .append(identifier)
-            .append(" = pigment{")
-            .append(inside)
-            .append("} #end\n");
+            .append(" = ")
+            .append(value)
+            .append(" #end\n");
     return out;
 }
 

@@ -65,8 +65,13 @@ public:
     /// Throws Error(Internal) for a picture that is not resident.
     std::string file_reference(const Texture& texture, PigmentContent content, int halvings = 0);
 
-    /// The comments that name all files, then a guarded declaration of every image, so that POV-Ray
-    /// loads an image once that several representations show; "" when there is none.
+    /// The text texture{...} of layers, which are declared: a list of textures takes no others.
+    std::string layered(const std::string& layers);
+
+    /// The comments that name all files; "" when there is none.
+    std::string file_comments() const;
+    /// A guarded declaration of every image, so that POV-Ray loads an image once that several
+    /// representations show, and of all layers.
     std::string declarations() const;
 
     /// Writes the files that are not there yet (a name is its content). Throws Error(Io),
@@ -84,7 +89,7 @@ private:
     std::string file_of(const Texture& texture, PigmentContent content, int halvings);
 
     std::map<std::string, PictureFile> files_;     // by name
-    std::map<std::string, std::string> declared_;  // by identifier: the inside of the pigment
+    std::map<std::string, std::string> declared_;  // by identifier: pigment{...} or texture{...}
 };
 
 /// The number of times a picture may be halved before one of its texels covers more than `texel` in
@@ -94,7 +99,7 @@ int halvings_of(const Texture& texture, double texel);
 /// The largest number of a picture that can hold more than 1 (EXR); else 1. Throws Error(BadFile).
 double brightest_of(const Picture& picture);
 
-/// The names of the files that declarations() listed at the beginning of a text, and no others.
+/// The names of the files that file_comments() listed at the beginning of a text, and no others.
 std::vector<std::string> pictures_named(std::string_view text);
 
 }  // namespace lodestone::povray

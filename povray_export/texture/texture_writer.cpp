@@ -25,6 +25,11 @@ constexpr double kRoughnessSteps[] = {0, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
 // Taste: lit, it is never seen; a larger value makes black surfaces gray.
 constexpr double kLeastPigment = 1e-4;
 
+// The share of a surface that its veil covers: the layer that holds what has not the color of its
+// picture.
+// Taste: any small share, which the layer below makes up for; a larger value costs that one digits.
+constexpr double kVeil = 1.0 / 64;
+
 constexpr const char* kClear =
     "pigment{rgbt 1} finish{ambient 0 emission 0 diffuse 0 specular 0 reflection{rgb 0}}";
 
@@ -54,6 +59,27 @@ public:
     TextureText(const TexturedSurface& surface, PictureWriter& pictures)
         : surface_(surface), pictures_(pictures) {}
 
+    /// The whole text. A surface that hides what is behind it is no average where it need not be:
+    /// POV-Ray takes averages and other maps of textures for transparent, so that a shadow ray asks
+    /// for their color and goes on.
+    std::string whole(const Material& material) {
+        if (material.other || material.alpha_mode != AlphaMode::Opaque ||
+            share(material.transmission, 0) > 0 || shown(material.roughness_texture) ||
+            shown(material.metallic_texture))
+            return "texture{" + mixed(material) + '}';
+        const SolidSurface surface = surface_of(material, look_of(material));
+        const bool mirror = surface.finish.mirror > 0 || surface.finish.mirror_grazing > 0;
+        if (surface.lamp || !surface.plain || mirror)
+            return "texture{" + solid(material, surface) + '}';
+        std::string layers = "texture{" + surface.pigment;
+        append_finish(layers, surface.finish, 1 / (1 - kVeil), glm::dvec3(0.0));
+        Finish veil;
+        veil.ambient = surface.white;
+        append_number(layers += "} texture{pigment{rgbt <1,1,1,", 1 - kVeil, 6);
+        append_finish(layers += ">} ", veil, 1 / kVeil, surface.even / kVeil);
+        return pictures_.layered(layers + '}');
+    }
+
     Body mixed(const Material& material) {
         if (!material.other)
             return covered(material);
@@ -66,6 +92,16 @@ public:
 
 private:
     using Entries = std::vector<std::pair<double, Body>>;
+
+    /// A surface without alpha, maps of numbers and glass, in parts that add up.
+    struct SolidSurface {
+        Body pigment;  // and the bumps
+        Finish finish;
+        bool lamp = false;      // it glows in a picture
+        bool plain = false;     // what follows has not the color of the pigment
+        glm::dvec3 white{0.0};  // the answer to a uniform sky
+        glm::dvec3 even{0.0};   // emission
+    };
 
     bool shown(const Texture& texture) const { return texture && surface_.uvs; }
 
@@ -202,8 +238,8 @@ private:
     Body lit(const Material& material, const SurfaceLook& look) {
         const double through = share(material.transmission, 0) * (1 - look.metallic);
         if (through <= 0)
-            return solid(material, look);
-        return average(solid(material, look), glass(material, look), through);
+            return solid(material, surface_of(material, look));
+        return average(solid(material, surface_of(material, look)), glass(material, look), through);
     }
 
     /// The text of glass. It filters by the base color where light enters and where it leaves; the
@@ -227,7 +263,7 @@ private:
         return out;
     }
 
-    Body solid(const Material& material, const SurfaceLook& look) {
+    SolidSurface surface_of(const Material& material, const SurfaceLook& look) {
         glm::dvec3 base;
         glm::dvec3 emission;
         glm::dvec3 paint(1.0);
@@ -239,52 +275,59 @@ private:
             if (material.vertex_colors)
                 paint[i] = share(surface_.color[i], 1);
         }
+        SolidSurface out;
         const bool image = shown(material.base_color_texture);
-        const bool lamp = shown(material.emission_texture);
+        out.lamp = shown(material.emission_texture);
         // The brightness that the paint leaves of a picture, and the picture's own scale, are left
         // to the finish: a picture is baked for every distinct hue only.
         const double scale = image ? even_scale(material.base_color_texture) : 1;
         const double painted = image ? std::max({paint.x, paint.y, paint.z}) : 1;
         const double brightness = scale * painted;
-        Finish finish = finish_of(look);
-        finish.ambient *= brightness;
-        finish.diffuse *= brightness;
-        finish.specular *= std::lerp(1.0, brightness, finish.metallic);
+        out.finish = finish_of(look);
+        out.finish.ambient *= brightness;
+        out.finish.diffuse *= brightness;
+        out.finish.specular *= std::lerp(1.0, brightness, out.finish.metallic);
         // The part that has not the color of the pigment, and is the same all over.
-        const glm::dvec3 white(white_sky(look));
-        glm::dvec3 even = lamp ? glm::dvec3(0.0) : emission;
-        const bool plain = image && (white != glm::dvec3(0.0) || even != glm::dvec3(0.0));
-        const double parts = 1 + (lamp ? 1 : 0) + (plain ? 1 : 0);
-        Body body = "pigment{";
+        out.white = glm::dvec3(white_sky(look));
+        out.even = out.lamp ? glm::dvec3(0.0) : emission;
+        out.plain = image && (out.white != glm::dvec3(0.0) || out.even != glm::dvec3(0.0));
+        out.pigment = "pigment{";
         if (image) {
             Texture texture = material.base_color_texture;
             if (painted > 0)
                 texture.offset *= paint / painted;
             texture.scale *= (painted > 0 ? paint / painted : glm::dvec3(1.0)) / scale;
-            body += pigment(texture, PigmentContent::Color);
+            out.pigment += pigment(texture, PigmentContent::Color);
         } else {
             glm::dvec3 color = base * paint;
             for (int i = 0; i < 3; ++i) {
-                if (white[i] + even[i] <= 0)
+                if (out.white[i] + out.even[i] <= 0)
                     continue;
                 color[i] = std::max(color[i], kLeastPigment);
-                finish.ambient[i] += white[i] / color[i];
-                even[i] /= color[i];
+                out.finish.ambient[i] += out.white[i] / color[i];
+                out.even[i] /= color[i];
             }
-            append_rgb(body, color);
+            append_rgb(out.pigment, color);
         }
-        body += "} " + normal(material);
-        append_finish(body, finish, parts, plain ? glm::dvec3(0.0) : parts * even);
+        out.pigment += "} " + normal(material);
+        return out;
+    }
+
+    Body solid(const Material& material, const SolidSurface& surface) {
+        const double parts = 1 + (surface.lamp ? 1 : 0) + (surface.plain ? 1 : 0);
+        Body body = surface.pigment;
+        append_finish(body, surface.finish, parts,
+                      surface.plain ? glm::dvec3(0.0) : parts * surface.even);
         if (parts == 1)
             return body;
         Entries entries{{1, std::move(body)}};
-        if (lamp)
+        if (surface.lamp)
             entries.emplace_back(1, glow(material.emission_texture, parts));
-        if (plain) {
+        if (surface.plain) {
             Finish rest;
-            rest.ambient = white;
+            rest.ambient = surface.white;
             Body text = "pigment{rgb 1} ";
-            append_finish(text, rest, parts, parts * even);
+            append_finish(text, rest, parts, parts * surface.even);
             entries.emplace_back(1, std::move(text));
         }
         return "average" + map(entries);
@@ -311,7 +354,7 @@ private:
 
 std::string texture_text(const Material& material, const TexturedSurface& surface,
                          PictureWriter& pictures) {
-    return "texture{" + TextureText(surface, pictures).mixed(material) + '}';
+    return TextureText(surface, pictures).whole(material);
 }
 
 bool bumpy(const Material& material) {
