@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "image/image.h"
+#include "povray_export/mesh/uv_extent.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -72,30 +73,12 @@ Key hue_of(Key key) {
     return rounded(key_of(glm::vec4(color), false), 257);
 }
 
-/// The metres that a step of 1 in texture coordinates covers of a triangle, where it covers most.
-/// Infinite where all of the triangle shows one place or one line of the picture.
-double metres_of_uv(const Mesh& mesh, size_t triangle) {
-    const Triangle& t = mesh.triangles[triangle];
-    const glm::dvec3 a = glm::dvec3(mesh.positions[t.y]) - glm::dvec3(mesh.positions[t.x]);
-    const glm::dvec3 b = glm::dvec3(mesh.positions[t.z]) - glm::dvec3(mesh.positions[t.x]);
-    const glm::dvec2 ua = glm::dvec2(mesh.uvs[t.y]) - glm::dvec2(mesh.uvs[t.x]);
-    const glm::dvec2 ub = glm::dvec2(mesh.uvs[t.z]) - glm::dvec2(mesh.uvs[t.x]);
-    const double area = ua.x * ub.y - ua.y * ub.x;
-    const glm::dvec3 along_u = (a * ub.y - b * ua.y) / area;
-    const glm::dvec3 along_v = (b * ua.x - a * ub.x) / area;
-    const double uu = glm::dot(along_u, along_u);
-    const double vv = glm::dot(along_v, along_v);
-    const double most = (uu + vv) / 2 + std::hypot((uu - vv) / 2, glm::dot(along_u, along_v));
-    return most > 0 && std::isfinite(most) ? std::sqrt(most)
-                                           : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
 MeshTextures::MeshTextures(const Model& model, const Representation& representation,
-                           const RepresentationOptions& options, PictureWriter& pictures,
-                           const Job& job)
-    : mesh_(representation.mesh()), job_(job) {
+                           const CutMesh& cut, const RepresentationOptions& options,
+                           PictureWriter& pictures, const Job& job)
+    : mesh_(representation.mesh()), cut_(cut), shown_(cut.any ? cut.mesh : mesh_), job_(job) {
     find_slots(model, representation, options.uvs && !mesh_.uvs.empty());
     if (uses_uvs_)
         find_ranges();
@@ -116,11 +99,11 @@ MeshTextures::MeshTextures(const Model& model, const Representation& representat
 
 size_t MeshTextures::of(size_t triangle, int corner) const {
     return !corners_.empty() ? corners_[3 * triangle + static_cast<size_t>(corner)]
-                             : slots_[slot_at_[mesh_.slot(triangle)]].text;
+                             : slots_[slot_at_[shown_.slot(triangle)]].text;
 }
 
 bool MeshTextures::is_glass(size_t triangle) const {
-    return refraction_of(slots_[slot_at_[mesh_.slot(triangle)]].material) > 0;
+    return refraction_of(slots_[slot_at_[shown_.slot(triangle)]].material) > 0;
 }
 
 bool MeshTextures::is_clear_beside_glass() const {
@@ -154,6 +137,10 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
                 fail(Status::InvalidArgument, "a representation uses material ", index, " of ",
                      model.materials.size());
             slot.material = model.materials[index];
+        }
+        if (number < cut_.opaque.size() && cut_.opaque[number] != 0) {
+            slot.material.alpha_mode = AlphaMode::Opaque;
+            slot.material.alpha_texture = {};
         }
         for (const Material* m = &slot.material; m != nullptr; m = m->other.get())
             slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
@@ -291,7 +278,7 @@ bool MeshTextures::plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane)
 }
 
 std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
-    std::vector<Key> keys(mesh_.colors.size());
+    std::vector<Key> keys(shown_.colors.size());
     bool alpha = false;
     bool pictured = false;
     for (const TexturedSlot& slot : slots_) {
@@ -302,7 +289,7 @@ std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
     }
     for (size_t i = 0; i < keys.size(); ++i) {
         check_job_sometimes(i);
-        keys[i] = key_of(mesh_.colors[i], alpha);
+        keys[i] = key_of(shown_.colors[i], alpha);
     }
     // Colors are first rounded to 8 bits, then coarser until they are few enough.
     for (uint64_t step = 1;; step = step == 1 ? 257 : step + std::max<uint64_t>(257, step / 4)) {
@@ -357,14 +344,15 @@ void MeshTextures::find_corners(PictureWriter& pictures) {
         }
         return found->second = static_cast<uint32_t>(add(slot, pictures));
     };
-    corners_.resize(3 * mesh_.triangles.size());
-    for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+    corners_.resize(3 * shown_.triangles.size());
+    for (size_t i = 0; i < shown_.triangles.size(); ++i) {
         check_job_sometimes(i);
-        const size_t at = slot_at_[mesh_.slot(i)];
-        const size_t plane = plane_of_.empty() ? kMostPlanes : plane_of_[i];
+        const size_t at = slot_at_[shown_.slot(i)];
+        const size_t source = cut_.any ? cut_.sources[i] : i;
+        const size_t plane = plane_of_.empty() ? kMostPlanes : plane_of_[source];
         for (int corner = 0; corner < 3; ++corner)
             corners_[3 * i + static_cast<size_t>(corner)] =
-                text_of(at, plane, slots_[at].colored ? keys[mesh_.triangles[i][corner]] : 0);
+                text_of(at, plane, slots_[at].colored ? keys[shown_.triangles[i][corner]] : 0);
     }
 }
 

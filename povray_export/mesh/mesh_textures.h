@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
+#include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/scene/representation_writer.h"
 #include "povray_export/texture/texture_writer.h"
 
@@ -25,8 +26,10 @@ public:
     /// Taste: a larger value shows bumps on surfaces of more faces, for a texture each.
     static constexpr size_t kMostPlanes = 64;
 
-    /// Equal looks share one text. Throws Error(InvalidArgument) for a material out of range.
-    MeshTextures(const Model& model, const Representation& representation,
+    /// The textures of a representation's mesh, or of what is left of it where `cut` has any.
+    /// Triangles and corners are numbered as in what is left. Equal looks share one text. Throws
+    /// Error(InvalidArgument) for a material out of range.
+    MeshTextures(const Model& model, const Representation& representation, const CutMesh& cut,
                  const RepresentationOptions& options, PictureWriter& pictures, const Job& job);
 
     /// The texts of the textures, by number.
@@ -69,13 +72,16 @@ private:
     void check_job_sometimes(size_t i) const;
 
     const Mesh& mesh_;
+    const CutMesh& cut_;
+    const Mesh& shown_;  // what is left of it
     const Job& job_;
     std::vector<TexturedSlot> slots_;
     std::vector<uint16_t> slot_at_;  // place in slots_, by slot of the mesh
     std::unordered_map<std::string, size_t> known_;
     std::vector<std::string> texts_;
-    std::vector<uint8_t> plane_of_;  // by triangle, of its slot's planes; kMostPlanes: no plane
-    std::vector<uint32_t> corners_;  // 3 a triangle; empty: the slots' texts
+    // By triangle of the whole mesh, of its slot's planes; kMostPlanes: no plane.
+    std::vector<uint8_t> plane_of_;
+    std::vector<uint32_t> corners_;  // 3 a triangle that is left; empty: the slots' texts
     bool uses_uvs_ = false;
     bool bumps_left_out_ = false;
     double refraction_ = 0;

@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <fstream>
 #include <optional>
 #include <poll.h>
 #include <sys/stat.h>
@@ -238,6 +239,27 @@ std::vector<std::string> arguments_of(const RunOptions& options, const std::stri
 }
 
 /// `live`: the picture that is drawn into; null: only messages tell how far it is.
+/// What may have ended POV-Ray by a signal: the object that the scene names for its clear surfaces.
+std::string likely_reason(const std::filesystem::path& folder, int signal) {
+    if (signal == SIGKILL)
+        return "; the system does that when memory is short";
+    std::ifstream scene(folder / "scene.pov");
+    std::string line;
+    while (std::getline(scene, line)) {
+        if (line.starts_with("#include"))
+            break;
+        if (!line.starts_with(kClearObject))
+            continue;
+        const std::string rest = line.substr(std::strlen(kClearObject));
+        const size_t space = rest.find(' ');
+        if (space == std::string::npos)
+            break;
+        return text("; it does not bear many clear surfaces one behind the other, and '",
+                    rest.substr(space + 1), "' has about ", rest.substr(0, space));
+    }
+    return "";
+}
+
 void show_progress(const PovrayMessages& messages, const LivePicture* live, const Job& job) {
     if (messages.pixels == 0) {
         // The number of tokens to parse is not known: half of this part is a million of them.
@@ -335,8 +357,7 @@ RunReport render_scene(const RunOptions& options, const Job& job) {
         const int signal = WTERMSIG(child.state);
         const char* word = sigabbrev_np(signal);  // real-time signals have none
         fail(Status::PovrayFailed, "POV-Ray was ended by signal ", signal, " (",
-             word != nullptr ? word : "no name",
-             signal == SIGKILL ? "; the system does that when memory is short)" : ")");
+             word != nullptr ? word : "no name", likely_reason(options.folder, signal), ")");
     }
     report.exit_code = child.state_lost ? (messages.finished ? 0 : 1) : WEXITSTATUS(child.state);
     if (report.exit_code != 0)

@@ -46,6 +46,10 @@ struct RunReport {
     std::filesystem::path picture;
 };
 
+/// The beginning of the line of a scene that names the object with the most clear surfaces one
+/// behind the other: their number and its name follow.
+inline constexpr const char* kClearObject = "// Clear layers: ";
+
 /// The program that render_scene() would start. Throws Error(PovrayMissing) that says what to
 /// install or set.
 std::string find_program(const std::string& program = "");

@@ -3,12 +3,15 @@
 
 #include "base/files.h"
 #include "base/parallel.h"
+#include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/texture/surface_finish.h"
 #include "povray_export/texture/texture_writer.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <fstream>
 #include <optional>
@@ -50,14 +53,28 @@ double thread_cpu_s() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-size_t IncludeFiles::add(const Representation& representation,
-                         const RepresentationOptions& options) {
-    const auto [at, fresh] = known_.try_emplace(file_hash(representation, options), files_.size());
+size_t IncludeFiles::add(const Representation& representation, const RepresentationOptions& options,
+                         double outline) {
+    // The steps of outlines whose uses share a file.
+    // Taste: a larger value writes fewer files, and cuts far things as finely as nearer ones.
+    constexpr int kShared = 4;
+    RepresentationOptions own = options;
+    const bool masked = options.textures && shows(representation, options, may_be_mask);
+    const int step = outline_step(outline);
+    if (masked)
+        own.outline = (step - (step % kShared + kShared) % kShared);
+    const auto [at, fresh] = known_.try_emplace(file_hash(representation, own), files_.size());
     if (fresh) {
         files_.emplace_back().representation = &representation;
-        files_.back().options = options;
-        files_.back().pictured = smaller_ && options.textures && pictured(files_.back());
+        files_.back().options = own;
+        if (masked)
+            files_.back().options.outline = step;
+        files_.back().pictured =
+            smaller_ && options.textures && shows(representation, options, textured);
     }
+    std::optional<int>& least = files_[at->second].options.outline;
+    if (least)
+        least = std::min(*least, step);
     return at->second;
 }
 
@@ -66,7 +83,31 @@ void IncludeFiles::note_texel(size_t index, double texel) {
     files_[index].texel = std::min(files_[index].texel, texel);
 }
 
-void IncludeFiles::name() {
+void IncludeFiles::merge_uncut(const Job& job) {
+    std::vector<uint8_t> uncut(files_.size(), 0);
+    parallel_for(files_.size(), [&](size_t i) {
+        IncludeFile& include = files_[i];
+        uncut[i] = include.options.outline && !cuts_by_outline(model_, *include.representation,
+                                                               include.options, outlines_, job)
+                       ? 1
+                       : 0;
+    });
+    std::unordered_map<Hash, size_t> known;
+    for (size_t i = 0; i < files_.size(); ++i) {
+        if (uncut[i] == 0)
+            continue;
+        files_[i].options.outline.reset();
+        const auto [at, fresh] =
+            known.try_emplace(file_hash(*files_[i].representation, files_[i].options), i);
+        if (fresh)
+            continue;
+        files_[i].same = at->second;
+        note_texel(at->second, files_[i].texel);
+    }
+}
+
+void IncludeFiles::name(const Job& job) {
+    merge_uncut(job);
     for (IncludeFile& include : files_) {
         if (include.pictured)
             include.options.texel = exponent_of(include.texel);
@@ -75,11 +116,12 @@ void IncludeFiles::name() {
     }
 }
 
-bool IncludeFiles::pictured(const IncludeFile& include) const {
-    if (!include.options.uvs || include.representation->summary.kind != Kind::Mesh)
+bool IncludeFiles::shows(const Representation& representation, const RepresentationOptions& options,
+                         bool (*is)(const Material&)) const {
+    if (!options.uvs || representation.summary.kind != Kind::Mesh)
         return false;
-    for (const uint32_t material : include.representation->materials) {
-        if (material < model_.materials.size() && textured(model_.materials[material]))
+    for (const uint32_t material : representation.materials) {
+        if (material < model_.materials.size() && is(model_.materials[material]))
             return true;
     }
     return false;
@@ -97,6 +139,8 @@ void IncludeFiles::write(const Job& job) {
         job.check();
         const double start = thread_cpu_s();
         IncludeFile& include = files_[i];
+        if (include.same)
+            return;
         const std::filesystem::path path = folder_ / "r" / (hex16(include.hash) + ".inc");
         std::error_code error;
         const uintmax_t found = std::filesystem::file_size(path, error);
@@ -107,7 +151,7 @@ void IncludeFiles::write(const Job& job) {
         } else {
             PictureWriter pictures;
             text = representation_text(model_, *include.representation, include.identifier,
-                                       include.options, pictures, job);
+                                       include.options, pictures, outlines_, job);
             if (!text.empty()) {
                 pictures.write(pictures_);
                 write_file(path, text);
@@ -116,6 +160,10 @@ void IncludeFiles::write(const Job& job) {
             }
             text.resize(std::min(text.size(), kBeginning));
         }
+        const size_t layers = text.find(kClearLayers);
+        if (layers != std::string::npos)
+            include.clear_layers =
+                std::strtod(text.c_str() + layers + std::strlen(kClearLayers), nullptr);
         include.bumps_left_out = text.find(kBumpsLeftOut) != std::string::npos;
         include.cpu_s = thread_cpu_s() - start;
         job.progress(static_cast<double>(++done) / static_cast<double>(files_.size() + 1));

@@ -17,13 +17,15 @@ struct IncludeFile {
     Hash hash = 0;
     std::string identifier;
     RepresentationOptions options = {};
-    bool pictured = false;  // true: it shows pictures, as fine as they are seen
+    std::optional<size_t> same = {};  // the file that stands for this one
+    bool pictured = false;            // true: it shows pictures, as fine as they are seen
     double texel = std::numeric_limits<double>::infinity();  // at its nearest use
     uint64_t bytes = 0;
     double cpu_s = 0;
     bool written = false;
     bool drawn = false;
     bool bumps_left_out = false;
+    double clear_layers = 0;  // one behind the other, where they are many
 };
 
 /// The include files of one scene. The model must outlive them.
@@ -33,18 +35,24 @@ public:
     IncludeFiles(const Model& model, std::filesystem::path folder, bool smaller)
         : model_(model), folder_(std::move(folder)), smaller_(smaller), pictures_(folder_) {}
 
-    /// Adds a representation and returns the index of its file; copies share one.
-    size_t add(const Representation& representation, const RepresentationOptions& options);
+    /// Adds a representation and returns the index of its file; copies share one. Where it shows a
+    /// mask those do whose outlines may be off by about as many metres of its own frame: so far and
+    /// near ones are cut differently.
+    size_t add(const Representation& representation, const RepresentationOptions& options,
+               double outline);
     /// Notes what a texel may cover where a file that is `pictured` is used, in metres of its own
     /// frame.
     void note_texel(size_t index, double texel);
-    /// Gives the files their names, once all are added and seen.
-    void name();
+    /// Gives the files their names, once all are added and seen. Files that would only differ in how
+    /// masks are cut, while these are not, become one.
+    void name(const Job& job);
     /// Writes r/<16 hex>.inc and the pictures that are not there yet. Throws Error(Io),
     /// Error(Cancelled).
     void write(const Job& job);
 
-    const IncludeFile& at(size_t index) const { return files_[index]; }
+    const IncludeFile& at(size_t index) const { return files_[files_[index].same.value_or(index)]; }
+    /// Whether the file stands for itself.
+    bool is_own(size_t index) const { return !files_[index].same; }
     size_t size() const { return files_.size(); }
     /// #include of each.
     /// The text that includes all files.
@@ -54,12 +62,16 @@ public:
     bool refracts() const;
 
 private:
-    bool pictured(const IncludeFile& include) const;
+    /// Whether a mesh with texture coordinates shows a material that `is` so.
+    void merge_uncut(const Job& job);
+    bool shows(const Representation& representation, const RepresentationOptions& options,
+               bool (*is)(const Material&)) const;
 
     const Model& model_;
     std::filesystem::path folder_;
     bool smaller_;
     PictureFolder pictures_;
+    MaskOutlines outlines_;
     std::vector<IncludeFile> files_;
     std::unordered_map<Hash, size_t> known_;  // by file_hash() without the texel
 };

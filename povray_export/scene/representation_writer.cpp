@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/scene/representation_writer.h"
 
+#include "povray_export/mesh/clear_layers.h"
+#include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/mesh/mesh_writer.h"
 #include "povray_export/scene/povray_number.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace lodestone::povray {
 namespace {
@@ -47,21 +52,24 @@ class DeclarationWriter {
 public:
     DeclarationWriter(const Model& model, const Representation& representation,
                       const std::string& identifier, const RepresentationOptions& options,
-                      PictureWriter& pictures, const Job& job)
+                      PictureWriter& pictures, MaskOutlines& outlines, const Job& job)
         : model_(model),
           representation_(representation),
           identifier_(identifier),
           options_(options),
           pictures_(pictures),
+          outlines_(outlines),
           job_(job) {}
 
     std::string operator()(const Mesh& mesh) const {
         check(mesh);
         if (!options_.textures)
             return mesh_text(mesh, nullptr, identifier_, job_);
-        const MeshTextures textures(model_, representation_, options_, pictures_, job_);
-        const char* left_out = textures.bumps_left_out() ? kBumpsLeftOut : "";
-        return mesh_text(mesh, &textures, identifier_, job_,
+        const CutMesh cut = cut_masks(model_, representation_, options_, outlines_, job_);
+        const MeshTextures textures(model_, representation_, cut, options_, pictures_, job_);
+        std::string left_out = textures.bumps_left_out() ? kBumpsLeftOut : "";
+        left_out += layers_line(cut.any ? cut.mesh : mesh, cut);
+        return mesh_text(cut.any ? cut.mesh : mesh, &textures, identifier_, job_,
                          pictures_.file_comments() + left_out + pictures_.declarations());
     }
 
@@ -90,6 +98,24 @@ public:
     }
 
 private:
+    /// The line of clear layers, where there are many.
+    std::string layers_line(const Mesh& shown, const CutMesh& cut) const {
+        // The layers that are worth a word.
+        // Taste: eight such meshes behind each other may be too many.
+        constexpr double kMany = kMostLayers / 8;
+        const double layers = clear_layers(shown, [&](size_t i) {
+            const uint16_t slot = shown.slot(i);
+            return slot < representation_.materials.size() &&
+                   (slot >= cut.opaque.size() || cut.opaque[slot] == 0) &&
+                   lets_through(model_.materials[representation_.materials[slot]]);
+        });
+        if (!(layers >= kMany))
+            return "";
+        std::string out = kClearLayers;
+        append_count(out, static_cast<uint64_t>(std::min(layers, 1e9)));
+        return out + '\n';
+    }
+
     std::string declare() const { return "#declare " + identifier_ + " = "; }
 
     const Model& model_;
@@ -97,10 +123,22 @@ private:
     const std::string& identifier_;
     const RepresentationOptions& options_;
     PictureWriter& pictures_;
+    MaskOutlines& outlines_;
     const Job& job_;
 };
 
 }  // namespace
+
+double outline_error(int outline) {
+    return std::exp2(outline / 2.0);
+}
+
+int outline_step(double metres) {
+    // Law: twice the exponents of a texel.
+    constexpr double kMost = 120;
+    return metres > 0 ? static_cast<int>(limited(std::floor(2 * std::log2(metres)), -kMost, kMost))
+                      : static_cast<int>(-kMost);
+}
 
 Hash file_hash(const Representation& representation, const RepresentationOptions& options) {
     Hasher hasher;
@@ -110,6 +148,8 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
         .value(options.uvs);
     if (options.texel)
         hasher.value(*options.texel);
+    if (options.outline)
+        hasher.text("outline").value(*options.outline);
     return hasher.result();
 }
 
@@ -121,9 +161,9 @@ std::string identifier_of(Hash file) {
 
 std::string representation_text(const Model& model, const Representation& representation,
                                 const std::string& identifier, const RepresentationOptions& options,
-                                PictureWriter& pictures, const Job& job) {
-    return visit(representation,
-                 DeclarationWriter(model, representation, identifier, options, pictures, job));
+                                PictureWriter& pictures, MaskOutlines& outlines, const Job& job) {
+    return visit(representation, DeclarationWriter(model, representation, identifier, options,
+                                                   pictures, outlines, job));
 }
 
 }  // namespace lodestone::povray

@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
+#include "povray_export/mesh/mask_outlines.h"
 #include "povray_export/texture/picture_writer.h"
 
 #include <optional>
@@ -18,11 +19,23 @@ struct RepresentationOptions {
     /// The largest size of a texel of its pictures: 2^texel metres, in the representation's own
     /// frame.
     std::optional<int> texel = {};
+    /// The metres, outline_error() in that frame, by which the outline of a mask may be off where
+    /// that is more than a texel.
+    std::optional<int> outline = {};
 };
+
+/// The metres of a step of `outline`: two steps are twice as many.
+double outline_error(int outline);
+/// The largest step that is not more than `metres`.
+int outline_step(double metres);
 
 /// A line at the beginning of the text of a mesh with bumps or normals that are not shown, because
 /// they lie on more planes than textures are written for.
 inline constexpr const char* kBumpsLeftOut = "// bumps left out\n";
+
+/// The beginning of such a line that tells how many clear surfaces a ray meets in a mesh, where these
+/// are many.
+inline constexpr const char* kClearLayers = "// clear layers ";
 
 /// The hash of the file's content: of what is drawn, the options and the version of this writer.
 Hash file_hash(const Representation& representation, const RepresentationOptions& options);
@@ -34,9 +47,10 @@ std::string identifier_of(Hash file);
 /// it can be seen (no triangle with an area, a primitive without volume). Before it stand the
 /// declarations of the pictures that `pictures` (a new one) is given. Throws Error(Internal) for a
 /// non-finite coordinate or a picture that is not resident, Error(InvalidArgument) for a bad index.
-/// cost: 0.1-0.2 us a triangle. It may be called from any thread on a const model.
+/// Masks are cut out along `outlines`, those of the whole export. cost: 0.1-0.2 us a triangle. It
+/// may be called from any thread on a const model.
 std::string representation_text(const Model& model, const Representation& representation,
                                 const std::string& identifier, const RepresentationOptions& options,
-                                PictureWriter& pictures, const Job& job);
+                                PictureWriter& pictures, MaskOutlines& outlines, const Job& job);
 
 }  // namespace lodestone::povray

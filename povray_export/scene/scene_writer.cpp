@@ -8,6 +8,8 @@
 #include "povray_export/lamp/light_writer.h"
 #include "povray_export/lamp/renderer_surfaces.h"
 #include "povray_export/lamp/scene_lights.h"
+#include "povray_export/mesh/clear_layers.h"
+#include "povray_export/run/povray_runner.h"
 #include "povray_export/scene/camera_writer.h"
 #include "povray_export/scene/include_files.h"
 #include "povray_export/scene/invertible_transform.h"
@@ -46,6 +48,10 @@ bool environment(const Model& model, const choose::Cut& cut,
 /// The characters of a typical object, for reserving memory.
 /// Taste: a larger value reserves more than is used.
 constexpr size_t kTypicalObject = 192;
+
+/// The pixels by which the outline of a mask may be off at any Pixel Error, where a texel is smaller.
+/// Taste: antialiasing tells no less; a larger value draws leaves far away with fewer corners.
+constexpr double kUnseen = 0.25;
 
 struct OccurrenceUse {
     uint32_t node;
@@ -120,6 +126,8 @@ public:
         ExportReport report = report_;
         for (size_t i = 0; i < includes_.size(); ++i) {
             const IncludeFile& include = includes_.at(i);
+            if (!includes_.is_own(i))
+                continue;
             report.cpu_s += include.cpu_s;
             if (!include.drawn)
                 continue;
@@ -197,10 +205,12 @@ private:
                                      "is not drawn: its transform is not a number"});
             return;
         }
-        use.file = includes_.add(representation, {textures, options_.uvs, std::nullopt});
+        const double pixel = pixel_of(node, representation, use.world);
+        use.file = includes_.add(representation, {textures, options_.uvs, std::nullopt},
+                                 std::max(view_.pixel_error, kUnseen) * pixel);
         uses_.push_back(use);
         if (includes_.at(use.file).pictured)
-            includes_.note_texel(use.file, texel_of(node, representation, use.world));
+            includes_.note_texel(use.file, shading_.texture_error * pixel);
     }
 
     void collect() {
@@ -232,16 +242,16 @@ private:
                         false);
         }
         collect_own();
-        includes_.name();
+        includes_.name(job_);
     }
 
-    /// The size that a texel may cover of one occurrence, in metres of its own frame.
-    double texel_of(const choose::CutNode& node, const Representation& representation,
+    /// The size of a pixel at one occurrence, in metres of its own frame.
+    double pixel_of(const choose::CutNode& node, const Representation& representation,
                     const Affine& world) const {
         const Bound bound = transformed(representation.summary.bound, world);
         const double z = distance(bound, view_.camera.position);
         const double enlarged = stretch(world) * std::max(1.0, node.importance);
-        return shading_.texture_error * choose::pixel_size(view_, z) / enlarged;
+        return choose::pixel_size(view_, z) / enlarged;
     }
 
     /// Names each problem once for all occurrences that show the same.
@@ -253,6 +263,35 @@ private:
             problems_.push_back({called(use.node), Severity::Warning, "bump_not_flat",
                                  "is shown without its bumps: POV-Ray shows them on flat faces"});
         }
+    }
+
+    /// The object with the most clear surfaces behind each other in all of its occurrences, as a
+    /// comment that render_scene() reads, and a problem where POV-Ray may not bear those of one.
+    std::string layers_text() {
+        std::map<ObjectIndex, double> sums;
+        const OccurrenceUse* deepest = nullptr;
+        double most = 0;
+        for (const OccurrenceUse& use : uses_) {
+            const double layers = includes_.at(use.file).clear_layers;
+            if (!(layers > 0) || (use.hidden & kCameraRays) != 0)
+                continue;
+            const double sum = sums[cut_.nodes[use.node].object] += layers;
+            if (sum > most) {
+                most = sum;
+                deepest = &use;
+            }
+            if (layers > kMostLayers)
+                problems_.push_back({called(use.node), Severity::Warning, "clear_layers",
+                                     text("has about ", std::lround(layers),
+                                          " half-clear surfaces one behind the other; POV-Ray may "
+                                          "not bear more than 250")});
+        }
+        if (deepest == nullptr)
+            return "";
+        std::string out = kClearObject;
+        append_count(out, static_cast<uint64_t>(std::min(most, 1e9)));
+        append_name(out += ' ', model_, cut_, deepest->node);
+        return out + '\n';
     }
 
     void write_text(const char* name, const std::string& text) {
@@ -446,6 +485,7 @@ private:
             for (const Light& light : sky_.lights)
                 append_light(out, light, bound, light_sampling(), problems_);
         }
+        out += layers_text();
         out += '\n';
         out += includes_.statements();
         out += '\n';

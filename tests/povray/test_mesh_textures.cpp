@@ -17,8 +17,10 @@ TEST(MeshTextures, ManyVertexColorsAreRoundedToAFewThousand) {
     material.vertex_colors = true;
     const ObjectIndex object = builder.mesh(mesh, {builder.material(material)});
     PictureWriter pictures;
-    const std::string text = representation_text(
-        builder.model, builder.model.objects[object].representations[0], "X", {}, pictures, {});
+    MaskOutlines outlines;
+    const std::string text =
+        representation_text(builder.model, builder.model.objects[object].representations[0], "X",
+                            {}, pictures, outlines, {});
     const size_t at = text.find("texture_list{");
     ASSERT_NE(at, std::string::npos);
     const int textures = std::stoi(text.substr(at + 13));

@@ -39,8 +39,9 @@ std::vector<std::filesystem::path> includes(const std::filesystem::path& folder)
 std::string include_text(const Model& model, ObjectIndex object,
                          const RepresentationOptions& options = {}) {
     PictureWriter pictures;
+    MaskOutlines outlines;
     return representation_text(model, model.objects[object].representations[0], "X", options,
-                               pictures, {});
+                               pictures, outlines, {});
 }
 
 std::string number(const DecimalLattice& lattice, double value) {
@@ -239,7 +240,8 @@ TEST(PovrayWriter, ACompositeIsOneUnionAndOneOfASingleSolidIsNone) {
         level.payload = std::make_shared<const Composite>(Composite{std::move(solids)});
         summarize(level, model);
         PictureWriter pictures({});
-        return representation_text(model, level, "LDS_R_0", {}, pictures, {});
+        MaskOutlines outlines;
+        return representation_text(model, level, "LDS_R_0", {}, pictures, outlines, {});
     };
     Solid flat{false, {}, 1};
     flat.primitive.half_size.z = 0;

@@ -125,8 +125,9 @@ TEST(RepresentationKinds, EachIsWrittenForPovrayAndHasAFalseColor) {
         representation.summary.kind = row.kind;
         representation.payload = sample_of(row.kind);
         povray::PictureWriter pictures;
+        povray::MaskOutlines outlines;
         const std::string text = povray::representation_text(
-            {}, representation, "It", {false, false, std::nullopt}, pictures, {});
+            {}, representation, "It", {false, false, std::nullopt}, pictures, outlines, {});
         EXPECT_EQ(text.rfind("#declare It = ", 0), 0u) << row.word;
         std::string color;
         povray::append_rgb(color, povray::color_of(row.kind, 1));

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/mesh/mask_outlines.h"
+
+#include "geometry/ring_simplification.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::povray {
+namespace {
+
+/// The part of the tolerance that leaving out corners may move an outline by, where it is that of
+/// the texels themselves; interpolating between them takes the rest.
+/// Taste: a larger value draws fewer corners, and leaves of some texels as triangles.
+constexpr double kOfTexel = 0.75;
+/// The part of a larger texel, the mean of several, by which its outline is off.
+/// Law: half of it.
+constexpr double kOfMean = 0.5;
+/// The least part of a texel, and the step of such parts, by which corners are left out.
+/// Taste: a smaller value finds more outlines, each with some corners fewer than the next.
+constexpr double kPart = 0.25;
+/// The least side of a picture in texels that is still outlined.
+/// Taste: a larger value keeps the outlines of things far away finer than needed.
+constexpr int kLeastSide = 4;
+/// Pictures of more texels are halved before they are outlined.
+/// Taste: a larger value outlines larger pictures texel by texel, for 32 bytes a texel meanwhile.
+constexpr size_t kMostTexels = size_t{1} << 22u;
+/// The squares on each side of a texel that is not interpolated, so that its corners stay.
+/// Taste: a larger value rounds their corners less.
+constexpr int kSquares = 4;
+/// The share of the area by which an outline may miss it: a tenth is what an alpha of 0.9 misses.
+/// Taste: a larger value cuts out what is no longer a mask when it is made smaller.
+constexpr double kMostMissed = 0.1;
+
+/// The hash of what a texture's alpha is, wherever it lies.
+Hash content_of(const Texture& texture) {
+    return Hasher()
+        .value(texture.picture->hash)
+        .value(texture.channel)
+        .value(texture.scale.x)
+        .value(texture.offset.x)
+        .result();
+}
+
+bool closest(const Texture& texture) {
+    return texture.interpolation == TextureInterpolation::Closest;
+}
+
+int halvings_of(const image::MaskTexels& texels, double tolerance) {
+    const int side = std::min(texels.width, texels.height);
+    int halvings = 0;
+    while ((side >> (halvings + 1)) >= kLeastSide &&
+           ((kOfMean + kPart) * std::ldexp(1.0, halvings + 1) <= tolerance ||
+            (texels.size() >> (2 * static_cast<unsigned>(halvings))) > kMostTexels))
+        ++halvings;
+    return halvings;
+}
+
+/// The texels, of those that are left, by which leaving out corners may move an outline.
+double part_of(double tolerance, int halvings) {
+    const double texels = std::ldexp(std::clamp(tolerance, 1.0, 1e9), -halvings);
+    const double part = halvings == 0 ? kOfTexel * texels : texels - kOfMean;
+    return kPart * std::floor(std::clamp(part, kPart, 1.0) / kPart);
+}
+
+/// Every texel as kSquares x kSquares.
+image::MaskNumbers squares(const image::MaskNumbers& from) {
+    image::MaskNumbers to;
+    to.width = kSquares * from.width;
+    to.height = kSquares * from.height;
+    to.alpha.resize(static_cast<size_t>(to.width) * static_cast<size_t>(to.height));
+    for (int y = 0; y < to.height; ++y) {
+        for (int x = 0; x < to.width; ++x)
+            to.alpha[static_cast<size_t>(y) * static_cast<size_t>(to.width) +
+                     static_cast<size_t>(x)] =
+                from.alpha[static_cast<size_t>(y / kSquares) * static_cast<size_t>(from.width) +
+                           static_cast<size_t>(x / kSquares)];
+    }
+    return to;
+}
+
+/// The texels of a picture made smaller that are not clear all over, with those around them: what is
+/// outlined there has nothing outside within a texel.
+std::vector<float> surroundings(const image::MaskTexels& texels, int width, int height) {
+    std::vector<uint8_t> shown(static_cast<size_t>(width) * static_cast<size_t>(height), 0);
+    const auto wrapped = [](int at, int count) { return (at + count) % count; };
+    const auto index = [&](int x, int y) {
+        return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+    };
+    // Between texels the alpha reaches to the next ones: the column (row) of each texel, with one
+    // more before the first and behind the last.
+    const auto blocks = [&](int count, int small) {
+        std::vector<int> block;
+        for (int i = -1; i <= count; ++i)
+            block.push_back(
+                static_cast<int>(static_cast<int64_t>(wrapped(i, count)) * small / count));
+        return block;
+    };
+    const std::vector<int> columns = blocks(texels.width, width);
+    const std::vector<int> rows = blocks(texels.height, height);
+    for (int y = 0; y < texels.height; ++y) {
+        const uint8_t* row =
+            texels.alpha.data() + static_cast<size_t>(y) * static_cast<size_t>(texels.width);
+        const int* v = rows.data() + y;
+        for (int x = 0; x < texels.width; ++x) {
+            if (row[x] == 0)
+                continue;
+            const int* u = columns.data() + x;
+            shown[index(u[1], v[1])] = 1;
+            if (u[0] == u[2] && v[0] == v[2])
+                continue;
+            for (int i = 0; i < 9; ++i)
+                shown[index(u[i % 3], v[i / 3])] = 1;
+        }
+    }
+    std::vector<float> out(shown.size(), 0.0f);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            for (int dy = -1; dy <= 1 && shown[index(x, y)] != 0; ++dy) {
+                for (int dx = -1; dx <= 1; ++dx)
+                    out[index(wrapped(x + dx, width), wrapped(y + dy, height))] = 1;
+            }
+        }
+    }
+    return out;
+}
+
+/// A picture's alpha as it is outlined.
+struct OutlinedPicture {
+    LevelGrid grid;
+    bool sure = false;  // the alpha itself, not means of several texels
+};
+
+OutlinedPicture outlined(const ShownMask& mask, const image::MaskTexels& texels, int halvings) {
+    const bool binary = mask.cutoff && halvings > 0;
+    image::MaskNumbers numbers =
+        image::halved(texels, halvings, binary ? mask.cutoff : std::nullopt);
+    const bool fine = closest(mask.texture) && halvings == 0 &&
+                      texels.size() * kSquares * kSquares <= kMostTexels;
+    if (fine)
+        numbers = squares(numbers);
+    return {LevelGrid(numbers.width, numbers.height, numbers.alpha,
+                      mask.texture.extension == TextureExtension::Repeat && !closest(mask.texture)),
+            halvings == 0};
+}
+
+/// The level between two steps of the alpha that is nearest: no texel is exactly there.
+double between_steps(double level) {
+    return (std::floor(255 * level) + 0.5) / 255;
+}
+
+/// The share of what is seen that is there.
+double share_of(const ShownMask& mask, const image::MaskTexels& texels) {
+    if (!mask.cutoff)
+        return image::count(texels, mask.seen).mean;
+    image::MaskTexels binary = texels;
+    for (uint8_t& alpha : binary.alpha)
+        alpha = alpha >= 255 * *mask.cutoff ? 255 : 0;
+    return image::count(binary, mask.seen).mean;
+}
+
+/// The level at which the area that is seen is the mask's; below 0: there is none.
+double level_of(const ShownMask& mask, const image::MaskTexels& texels, int halvings) {
+    if (mask.cutoff && halvings == 0)
+        return (std::ceil(255 * *mask.cutoff) - 0.5) / 255;
+    const OutlinedPicture picture = outlined(mask, texels, halvings);
+    const std::vector<uint8_t> seen =
+        image::seen_of(mask.seen, texels, picture.grid.width(), picture.grid.height());
+    const auto whole = static_cast<double>(std::count(seen.begin(), seen.end(), uint8_t{1}));
+    const double wanted = whole * share_of(mask, texels);
+    double level = between_steps(picture.grid.level_of(wanted, seen));
+    if (picture.sure)
+        level = std::clamp(level, between_steps(0.1), between_steps(0.9));
+    const double missed = std::abs(picture.grid.area(level, seen) - wanted);
+    return missed <= kMostMissed * wanted + 0.5 ? level : -1;
+}
+
+}  // namespace
+
+template <typename Value>
+const Value& MaskOutlines::SharedValues<Value>::of(Hash key, const std::function<Value()>& make) {
+    std::shared_ptr<SharedValue> entry;
+    {
+        const std::lock_guard lock(mutex);
+        std::shared_ptr<SharedValue>& found = known[key];
+        if (!found)
+            found = std::make_shared<SharedValue>();
+        entry = found;
+    }
+    const std::lock_guard making(entry->making);
+    if (!entry->made) {
+        entry->value = make();
+        entry->made = true;
+    }
+    return entry->value;
+}
+
+MaskTexelsPtr MaskOutlines::texels(const Texture& texture) {
+    return texels_.of(content_of(texture), [&] {
+        return std::make_shared<const image::MaskTexels>(image::mask_texels(texture));
+    });
+}
+
+MaskOutlines::OutlineRingsPtr MaskOutlines::rings_of(const ShownMask& mask,
+                                                     const image::MaskTexels& texels, int halvings,
+                                                     double level, double tolerance) {
+    const OutlinedPicture picture = outlined(mask, texels, halvings);
+    auto out = std::make_shared<OutlineRings>();
+    out->size = {picture.grid.width(), picture.grid.height()};
+    bool too_many = false;
+    // Law: leaving out corners by less than a texel leaves one of some crossings.
+    constexpr size_t kMostCrossings = 16 * kMostCorners;
+    const std::vector<Ring> rings = picture.grid.rings(level, kMostCrossings, too_many);
+    if (too_many)
+        return nullptr;
+    for (const Ring& ring : rings) {
+        out->area += signed_area(ring);
+        out->simple.push_back(simplified(ring, tolerance, {out->size.x, out->size.y}));
+        out->corners += out->simple.back().size();
+    }
+    return out->corners <= kMostCorners ? out : nullptr;
+}
+
+MaskOutlinePtr MaskOutlines::outline_at(const ShownMask& mask, const image::MaskTexels& texels,
+                                        int halvings, double level, Hash key) {
+    // Outlines that are nearer to each other than the tolerance may cross: then it is made smaller.
+    const double part = part_of(mask.tolerance, halvings);
+    for (double tolerance = part; tolerance > part / 16; tolerance /= 2) {
+        const Hash own = Hasher().value(key).value(tolerance).result();
+        const OutlineRingsPtr rings =
+            rings_.of(own, [&] { return rings_of(mask, texels, halvings, level, tolerance); });
+        if (!rings || rings->corners > mask.most_corners)
+            return nullptr;
+        const MaskOutlinePtr found = outlines_.of(own, [&]() -> MaskOutlinePtr {
+            auto out = std::make_shared<MaskOutline>();
+            out->inside = triangulated(rings->simple);
+            out->level = level;
+            out->halvings = halvings;
+            // The area of triangles that are missing or lie one on the other.
+            // Taste: half a texel of a hundred is not seen; a larger value lets them cross more.
+            if (std::abs(out->inside.area() - rings->area) > 0.005 * rings->area + 0.5)
+                return nullptr;
+            for (glm::dvec2& point : out->inside.points)
+                point /= rings->size;
+            return out;
+        });
+        if (found)
+            return found;
+    }
+    return nullptr;
+}
+
+MaskOutlinePtr MaskOutlines::outline(const ShownMask& mask) {
+    const MaskTexelsPtr texels = this->texels(mask.texture);
+    for (int halvings = halvings_of(*texels, mask.tolerance); halvings >= 0; --halvings) {
+        Hasher picture;
+        picture.value(content_of(mask.texture))
+            .value(mask.texture.interpolation)
+            .value(mask.texture.extension == TextureExtension::Repeat)
+            .value(halvings)
+            .value(mask.cutoff ? *mask.cutoff : -1.0);
+        Hasher use = picture;
+        use.array(std::span<const uint8_t>(mask.seen.blocks));
+        const double level =
+            levels_.of(use.result(), [&] { return level_of(mask, *texels, halvings); });
+        if (level < 0)
+            continue;
+        return outline_at(mask, *texels, halvings, level, picture.value(level).result());
+    }
+    return nullptr;
+}
+
+MaskOutlinePtr MaskOutlines::hull(const Texture& texture, size_t most_corners) {
+    // The texels along the longer side of the picture whose texels are surrounded.
+    // Taste: a larger value leaves fewer clear texels in, for more triangles.
+    constexpr int kFinest = 64;
+    constexpr int kCoarsest = 8;  // Taste: what is coarser is the whole picture.
+    const MaskTexelsPtr texels = this->texels(texture);
+    for (int halvings = 0; std::max(texels->width, texels->height) >> halvings >= kCoarsest;
+         ++halvings) {
+        if (std::max(texels->width, texels->height) >> halvings > kFinest)
+            continue;
+        const Hash key = Hasher()
+                             .value(content_of(texture))
+                             .value(texture.extension == TextureExtension::Repeat)
+                             .value(halvings)
+                             .result();
+        const MaskOutlinePtr found = hulls_.of(key, [&] { return hull_at(texture, halvings); });
+        if (!found)
+            return nullptr;
+        if (found->inside.points.size() <= most_corners)
+            return found;
+    }
+    return nullptr;
+}
+
+MaskOutlinePtr MaskOutlines::hull_at(const Texture& texture, int halvings) {
+    // The share of a picture from which on nothing is gained by leaving out the rest.
+    // Taste: a larger value leaves out less, for as many triangles.
+    constexpr double kMostLeft = 0.8;
+    const MaskTexelsPtr texels = this->texels(texture);
+    const int width = std::max(1, texels->width >> halvings);
+    const int height = std::max(1, texels->height >> halvings);
+    const LevelGrid grid(width, height, surroundings(*texels, width, height),
+                         texture.extension == TextureExtension::Repeat);
+    bool too_many = false;
+    std::vector<Ring> rings = grid.rings(0.5, kMostCorners, too_many);
+    for (Ring& ring : rings)
+        ring = simplified(ring, kOfTexel, {double(width), double(height)});
+    auto out = std::make_shared<MaskOutline>();
+    out->inside = triangulated(rings);
+    out->halvings = halvings;
+    double area = 0;
+    for (const Ring& ring : rings)
+        area += signed_area(ring);
+    // Law: what overlaps is drawn twice, what is missing not at all.
+    constexpr double kRounding = 1e-9;
+    const double whole = double(width) * height;
+    if (too_many || area > kMostLeft * whole ||
+        std::abs(out->inside.area() - area) > kRounding * whole)
+        return nullptr;
+    for (glm::dvec2& point : out->inside.points)
+        point /= glm::dvec2(width, height);
+    return out;
+}
+
+}  // namespace lodestone::povray

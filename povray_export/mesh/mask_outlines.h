@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Mask outlines: the part of a picture where its alpha says that something is, as triangles. A
+// picture is outlined once for all its uses in one export.
+#pragma once
+
+#include "geometry/ring_triangulation.h"
+#include "image/mask_texels.h"
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+namespace lodestone::povray {
+
+using MaskTexelsPtr = std::shared_ptr<const image::MaskTexels>;
+
+/// The inside of a mask over one repetition of its picture: points are picture coordinates.
+struct MaskOutline {
+    PlaneTriangles inside;
+    double level = 0;  // what of the texture's number is inside
+    int halvings = 0;  // of the texels that were outlined
+};
+using MaskOutlinePtr = std::shared_ptr<const MaskOutline>;
+
+/// A mask as a surface shows it.
+struct ShownMask {
+    const Texture& texture;
+    std::optional<double> cutoff;  // it is where the number is at least that
+    const image::SeenTexels& seen;
+    double tolerance = 1;              // texels by which an outline may be off; below 1 counts as 1
+    size_t most_corners = ~size_t{0};  // of the outline; more are not worth it
+};
+
+/// The outlines of one export. May be used from any thread; no answer depends on the order.
+class MaskOutlines {
+public:
+    /// The alpha of a texture. Throws Error(BadFile).
+    MaskTexelsPtr texels(const Texture& texture);
+
+    /// The outline of a mask, of whose alpha the area that is seen keeps the mean: the level is
+    /// shifted, and corners are left out without a change of area. Null where it has more corners
+    /// than asked for or kMostCorners, or no level has about the right area.
+    MaskOutlinePtr outline(const ShownMask& mask);
+
+    /// An outline around all of a texture that is not quite clear, coarse but never inside of it. Null
+    /// where it would have more corners or leaves out next to nothing.
+    MaskOutlinePtr hull(const Texture& texture, size_t most_corners);
+
+    /// The most corners of an outline.
+    /// Taste: a larger value cuts out finer nets, for triangles as many and time that grows with
+    /// their square.
+    static constexpr size_t kMostCorners = 8192;
+
+private:
+    template <typename Value>
+    struct SharedValues {
+        struct SharedValue {
+            std::mutex making;
+            bool made = false;
+            Value value{};
+        };
+        std::mutex mutex;
+        std::unordered_map<Hash, std::shared_ptr<SharedValue>> known;
+
+        const Value& of(Hash key, const std::function<Value()>& make);
+    };
+
+    /// An outline with few corners, and where it begins.
+    struct OutlineRings {
+        std::vector<Ring> simple;
+        size_t corners = 0;
+        double area = 0;
+        glm::dvec2 size{1.0};
+    };
+    using OutlineRingsPtr = std::shared_ptr<const OutlineRings>;
+
+    static OutlineRingsPtr rings_of(const ShownMask& mask, const image::MaskTexels& texels,
+                                    int halvings, double level, double tolerance);
+    MaskOutlinePtr outline_at(const ShownMask& mask, const image::MaskTexels& texels, int halvings,
+                              double level, Hash key);
+
+    MaskOutlinePtr hull_at(const Texture& texture, int halvings);
+
+    SharedValues<MaskTexelsPtr> texels_;
+    SharedValues<double> levels_;
+    SharedValues<OutlineRingsPtr> rings_;
+    SharedValues<MaskOutlinePtr> outlines_;
+    SharedValues<MaskOutlinePtr> hulls_;
+};
+
+}  // namespace lodestone::povray

@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/mesh/mesh_cutting.h"
+
+#include "base/error.h"
+#include "povray_export/mesh/clear_layers.h"
+#include "povray_export/mesh/triangle_cutter.h"
+#include "povray_export/mesh/uv_extent.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <unordered_map>
+
+namespace lodestone::povray {
+namespace {
+
+/// The triangles that one triangle of a slot may become on average. POV-Ray parses that many in a
+/// sixth of a millisecond and keeps them in 8 kB; a hole that a ray meets takes it some
+/// microseconds, each time, for every sample of a light.
+/// Taste: a larger value cuts finer nets, for memory and parsing.
+constexpr size_t kMostEach = 32;
+/// The same where only what is clear is cut off, which saves most of the holes.
+/// Taste: a larger value leaves fewer of them.
+constexpr size_t kMostTrimmed = 24;
+/// The triangles that any slot may become: 8 MB, as an image of 1600 x 1600 takes, and a sixth of a
+/// second to parse.
+/// Taste: a larger value cuts single cards, and trees of a few of them, with more on them.
+constexpr size_t kMostOfFew = size_t{1} << 15u;
+/// The triangles that a slot may become at most, however many it has.
+/// Taste: a larger value cuts larger meshes, for up to 64 MB each.
+constexpr size_t kMostOfMany = size_t{1} << 18u;
+
+/// How a slot's mask is cut.
+struct CutSlot {
+    const Material* material = nullptr;
+    std::vector<uint32_t> triangles;
+    std::vector<uint32_t> doubles;  // the other sides of some of them, which are left out
+    double tolerance = 1;           // in texels
+    size_t most = 0;                // triangles that it may become
+    size_t hull_corners = 0;        // corners of what it may be trimmed by
+    MaskOutlinePtr outline;
+    bool full = false;     // nothing of it is clear: it is opaque without any cut
+    bool opaque = false;   // what is left has no alpha
+    bool painted = false;  // colors of vertices make some of it clear
+};
+
+class MeshCutter {
+public:
+    MeshCutter(const Model& model, const Representation& representation,
+               const RepresentationOptions& options, MaskOutlines& outlines, const Job& job)
+        : model_(model),
+          representation_(representation),
+          options_(options),
+          mesh_(representation.mesh()),
+          outlines_(outlines),
+          job_(job) {}
+
+    bool cuts_by_outline() {
+        find_slots();
+        return std::any_of(slots_.begin(), slots_.end(), [&](auto& slot) {
+            return find_outline(slot.second) && slot.second.opaque && slot.second.outline;
+        });
+    }
+
+    CutMesh run() {
+        find_slots();
+        bool any = false;
+        for (auto at = slots_.begin(); at != slots_.end();) {
+            job_.check();
+            if (find_outline(at->second)) {
+                any = true;
+                ++at;
+            } else {
+                at = slots_.erase(at);
+            }
+        }
+        if (!any)
+            return {};
+        begin();
+        for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+            if (!slots_.contains(mesh_.slot(i)))
+                keep(i);
+        }
+        for (const auto& [number, slot] : slots_)
+            cut(number, slot);
+        if (!out_.any)
+            return {};
+        return std::move(out_);
+    }
+
+private:
+    const Material* material_of(uint16_t slot) const {
+        if (slot >= representation_.materials.size())
+            return nullptr;
+        const uint32_t index = representation_.materials[slot];
+        if (index >= model_.materials.size())
+            fail(Status::InvalidArgument, "a representation uses material ", index, " of ",
+                 model_.materials.size());
+        return &model_.materials[index];
+    }
+
+    /// Finds the slots whose materials may be masks, and how finely each is seen.
+    void find_slots() {
+        if (!options_.textures || !options_.uvs || mesh_.uvs.empty())
+            return;
+        for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+            const uint16_t number = mesh_.slot(i);
+            const auto found = slots_.find(number);
+            if (found != slots_.end()) {
+                found->second.triangles.push_back(static_cast<uint32_t>(i));
+                continue;
+            }
+            const Material* material = material_of(number);
+            if (material == nullptr || !may_be_mask(*material))
+                continue;
+            slots_[number].material = material;
+            slots_[number].triangles.push_back(static_cast<uint32_t>(i));
+        }
+        layers_ = clear_layers(mesh_, [&](size_t i) {
+            const Material* material = material_of(mesh_.slot(i));
+            return material != nullptr && lets_through(*material);
+        });
+        for (auto at = slots_.begin(); at != slots_.end();)
+            at = leave_out_doubles(at->second) ? std::next(at) : slots_.erase(at);
+        for (auto& [number, slot] : slots_) {
+            slot.painted = painted_clear(slot);
+            if (!options_.outline)
+                continue;
+            // The share of the area that may see its outline less finely than asked.
+            // Taste: a larger value cuts more coarsely for single stretched triangles.
+            constexpr double kSpared = 0.001;
+            const Texture& texture = slot.material->alpha_texture;
+            const std::array<double, 6>& m = texture.to_picture;
+            const double uv =
+                outline_error(*options_.outline) / metres_of_uv(mesh_, slot.triangles, kSpared);
+            slot.tolerance = uv * std::min(std::hypot(m[0], m[1]) * texture.picture->width,
+                                           std::hypot(m[3], m[4]) * texture.picture->height);
+        }
+    }
+
+    /// The corners of a triangle by their positions, the first one least.
+    std::array<uint32_t, 3> ordered(uint32_t triangle) const {
+        const Triangle& t = mesh_.triangles[triangle];
+        std::array<uint32_t, 3> corners{t.x, t.y, t.z};
+        std::sort(corners.begin(), corners.end(), [&](uint32_t a, uint32_t b) {
+            const glm::vec3& p = mesh_.positions[a];
+            const glm::vec3& q = mesh_.positions[b];
+            return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+        });
+        return corners;
+    }
+
+    /// Leaves out triangles that lie on another one of the slot and show the same: the other sides of
+    /// leaves. POV-Ray shows both sides of all, and of two that are cut and rounded by themselves it
+    /// takes the second for the surface that a ray begins at, and loses all that is behind. False:
+    /// some that lie on others show something else.
+    bool leave_out_doubles(CutSlot& slot) const {
+        std::unordered_map<Hash, uint32_t> known;
+        std::vector<uint32_t> own;
+        for (const uint32_t triangle : slot.triangles) {
+            const std::array<uint32_t, 3> corners = ordered(triangle);
+            Hasher place;
+            for (const uint32_t corner : corners) {
+                for (int i = 0; i < 3; ++i)
+                    place.value(mesh_.positions[corner][i] + 0.0f);  // -0 is 0
+            }
+            const auto [at, fresh] = known.try_emplace(place.result(), triangle);
+            if (fresh) {
+                own.push_back(triangle);
+                continue;
+            }
+            const std::array<uint32_t, 3> others = ordered(at->second);
+            for (size_t k = 0; k < 3; ++k) {
+                if (mesh_.uvs[corners[k]] != mesh_.uvs[others[k]] ||
+                    (!mesh_.colors.empty() && mesh_.colors[corners[k]] != mesh_.colors[others[k]]))
+                    return false;
+            }
+            slot.doubles.push_back(triangle);
+        }
+        slot.triangles = std::move(own);
+        return true;
+    }
+
+    /// Whether colors of vertices make some of a slot clear.
+    bool painted_clear(const CutSlot& slot) const {
+        if (!slot.material->vertex_colors || mesh_.colors.empty())
+            return false;
+        // The least alpha that counts as full.
+        // Law: half a step of 8 bits.
+        constexpr float kFull = 1 - 0.5f / 255;
+        return std::any_of(slot.triangles.begin(), slot.triangles.end(), [&](uint32_t i) {
+            const Triangle& t = mesh_.triangles[i];
+            return !(mesh_.colors[t.x].w >= kFull && mesh_.colors[t.y].w >= kFull &&
+                     mesh_.colors[t.z].w >= kFull);
+        });
+    }
+
+    /// The corners of a triangle in the picture; false where one is beyond all sense.
+    bool place(const Texture& texture, uint32_t triangle, glm::dvec2 (&at)[3]) const {
+        // Law: texels beyond cannot be told apart, and tiles must fit an integer.
+        constexpr double kFarthest = 1e6;
+        for (int k = 0; k < 3; ++k) {
+            at[k] = to_picture(texture, glm::dvec2(mesh_.uvs[mesh_.triangles[triangle][k]]));
+            if (!(std::abs(at[k].x) < kFarthest && std::abs(at[k].y) < kFarthest))
+                return false;
+        }
+        return true;
+    }
+
+    /// False: there is nothing to cut.
+    bool find_outline(CutSlot& slot) const {
+        const Material& material = *slot.material;
+        const Texture& texture = material.alpha_texture;
+        const MaskTexelsPtr texels = outlines_.texels(texture);
+        image::SeenTexels seen = image::unseen_texels(texels->width, texels->height);
+        double pictures = 0;  // that all triangles together show
+        for (const uint32_t triangle : slot.triangles) {
+            glm::dvec2 at[3];
+            if (!place(texture, triangle, at) || !note_seen(seen, texture, at))
+                return false;
+            const glm::dvec2 a = at[1] - at[0];
+            const glm::dvec2 b = at[2] - at[0];
+            pictures += std::abs(a.x * b.y - a.y * b.x) / 2;
+        }
+        const image::MaskCount count = image::count(*texels, seen);
+        const bool clip = material.alpha_mode == AlphaMode::Clip;
+        if (count.seen == 0)
+            return false;
+        slot.most = std::clamp(kMostEach * slot.triangles.size(), kMostOfFew, kMostOfMany);
+        // An outline is about as many triangles as corners, once for each picture, and the sides of
+        // the mesh's triangles cut those.
+        // Fitted: to pine branches of 28 to 206 triangles on 2,700: 1.3 to 1.4 times as many.
+        constexpr double kMore = 1.35;
+        const auto most = static_cast<size_t>(static_cast<double>(slot.most) /
+                                              (kMore * std::max(pictures, 1e-3)));
+        slot.hull_corners = most * kMostTrimmed / kMostEach;
+        // So many blends behind each other look as a mask of them does, and POV-Ray bears no more.
+        const bool deep = layers_ > kMostLayers;
+        if (!slot.painted && (clip || deep || count.is_mask())) {
+            const std::optional<double> cutoff =
+                clip ? std::optional(limited(material.alpha_cutoff, 0, 1)) : std::nullopt;
+            slot.full = clip ? *cutoff <= 0
+                             : count.sure == count.seen && count.clear == 0 && count.mean > 0.5;
+            if (!slot.full)
+                slot.outline = outlines_.outline({texture, cutoff, seen, slot.tolerance, most});
+            slot.opaque = slot.full || slot.outline;
+        }
+        if (!slot.opaque)
+            slot.outline = outlines_.hull(texture, slot.hull_corners);
+        return slot.full || slot.outline;
+    }
+
+    void begin() {
+        out_.mesh.positions = mesh_.positions;
+        out_.mesh.normals = mesh_.normals;
+        out_.mesh.uvs = mesh_.uvs;
+        out_.mesh.colors = mesh_.colors;
+        out_.corners.resize(mesh_.positions.size());
+        for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
+            for (int k = 0; k < 3; ++k) {
+                CornerSource& corner = out_.corners[mesh_.triangles[i][k]];
+                corner.triangle = static_cast<uint32_t>(i);
+                corner.weights = glm::vec3(k == 0, k == 1, k == 2);
+            }
+        }
+    }
+
+    void keep(size_t triangle) {
+        out_.mesh.triangles.push_back(mesh_.triangles[triangle]);
+        out_.mesh.slots.push_back(mesh_.slot(triangle));
+        out_.sources.push_back(static_cast<uint32_t>(triangle));
+    }
+
+    void cut(uint16_t number, const CutSlot& slot) {
+        const size_t before = out_.mesh.triangles.size();
+        const size_t vertices = out_.mesh.positions.size();
+        std::optional<TriangleCutter> cutter;
+        if (!slot.full)
+            cutter.emplace(*slot.outline, slot.material->alpha_texture);
+        for (size_t i = 0; i < slot.triangles.size(); ++i) {
+            if ((i & 0xffu) == 0xffu)
+                job_.check();
+            const uint32_t triangle = slot.triangles[i];
+            if (!slot.full && !cut_one(*cutter, triangle, slot, before + slot.most)) {
+                shrink(before, vertices);
+                trim(slot, before, vertices);
+                return;
+            }
+            if (slot.full)
+                keep(triangle);
+        }
+        if (slot.full) {
+            for (const uint32_t whole : slot.doubles)
+                keep(whole);
+        }
+        out_.any = true;
+        if (out_.opaque.size() <= number)
+            out_.opaque.resize(size_t{number} + 1, 0);
+        out_.opaque[number] = slot.opaque ? 1 : 0;
+    }
+
+    /// Cuts off what is clear of a slot that became too many triangles, or keeps it.
+    void trim(const CutSlot& slot, size_t before, size_t vertices) {
+        CutSlot hull = slot;
+        hull.outline =
+            slot.opaque ? outlines_.hull(slot.material->alpha_texture, slot.hull_corners) : nullptr;
+        bool fits = hull.outline != nullptr;
+        if (fits) {
+            TriangleCutter cutter(*hull.outline, slot.material->alpha_texture);
+            for (size_t i = 0; fits && i < slot.triangles.size(); ++i)
+                fits = cut_one(cutter, slot.triangles[i], hull, before + slot.most);
+            out_.any = out_.any || fits;
+        }
+        if (fits)
+            return;
+        shrink(before, vertices);
+        for (const uint32_t whole : slot.triangles)
+            keep(whole);
+        for (const uint32_t whole : slot.doubles)
+            keep(whole);
+    }
+
+    /// False: there are more triangles than `most`.
+    bool cut_one(TriangleCutter& cutter, uint32_t triangle, const CutSlot& slot, size_t most) {
+        glm::dvec2 at[3];
+        place(slot.material->alpha_texture, triangle, at);
+        if (out_.mesh.triangles.size() >= most)
+            return false;
+        const CutTriangle& pieces = cutter.cut(at, most - out_.mesh.triangles.size());
+        switch (pieces.outcome) {
+            case CutOutcome::TooMany:
+                return false;
+            case CutOutcome::Whole:
+                keep(triangle);
+                return true;
+            case CutOutcome::Pieces:
+                break;
+        }
+        const auto first = static_cast<uint32_t>(out_.mesh.positions.size());
+        for (const glm::dvec3& weights : pieces.corners)
+            add_corner(triangle, weights);
+        for (const glm::uvec3& piece : pieces.triangles) {
+            out_.mesh.triangles.push_back(piece + first);
+            out_.mesh.slots.push_back(mesh_.slot(triangle));
+            out_.sources.push_back(triangle);
+        }
+        return true;
+    }
+
+    template <typename Value>
+    static Value mean(const std::vector<Value>& values, const Triangle& t, const glm::vec3& w) {
+        return w.x * values[t.x] + w.y * values[t.y] + w.z * values[t.z];
+    }
+
+    void add_corner(uint32_t triangle, const glm::dvec3& weights) {
+        const Triangle& t = mesh_.triangles[triangle];
+        const glm::vec3 w(weights);
+        out_.corners.push_back({triangle, w});
+        out_.mesh.positions.emplace_back(weights.x * glm::dvec3(mesh_.positions[t.x]) +
+                                         weights.y * glm::dvec3(mesh_.positions[t.y]) +
+                                         weights.z * glm::dvec3(mesh_.positions[t.z]));
+        if (!mesh_.normals.empty()) {
+            const glm::vec3 normal = mean(mesh_.normals, t, w);
+            const float length = glm::length(normal);
+            out_.mesh.normals.push_back(length > 0 ? normal / length : mesh_.normals[t.x]);
+        }
+        out_.mesh.uvs.push_back(mean(mesh_.uvs, t, w));
+        if (!mesh_.colors.empty())
+            out_.mesh.colors.push_back(mean(mesh_.colors, t, w));
+    }
+
+    void shrink(size_t triangles, size_t vertices) {
+        out_.mesh.triangles.resize(triangles);
+        out_.mesh.slots.resize(triangles);
+        out_.sources.resize(triangles);
+        out_.corners.resize(vertices);
+        out_.mesh.positions.resize(vertices);
+        out_.mesh.uvs.resize(vertices);
+        if (!mesh_.normals.empty())
+            out_.mesh.normals.resize(vertices);
+        if (!mesh_.colors.empty())
+            out_.mesh.colors.resize(vertices);
+    }
+
+    const Model& model_;
+    const Representation& representation_;
+    const RepresentationOptions& options_;
+    const Mesh& mesh_;
+    MaskOutlines& outlines_;
+    const Job& job_;
+    std::map<uint16_t, CutSlot> slots_;
+    double layers_ = 0;
+    CutMesh out_;
+};
+
+}  // namespace
+
+bool may_be_mask(const Material& material) {
+    const Texture& alpha = material.alpha_texture;
+    return material.alpha_mode != AlphaMode::Opaque && alpha && !alpha.picture->bytes.empty() &&
+           !material.other && !(material.transmission > 0);
+}
+
+CutMesh cut_masks(const Model& model, const Representation& representation,
+                  const RepresentationOptions& options, MaskOutlines& outlines, const Job& job) {
+    return MeshCutter(model, representation, options, outlines, job).run();
+}
+
+bool cuts_by_outline(const Model& model, const Representation& representation,
+                     const RepresentationOptions& options, MaskOutlines& outlines, const Job& job) {
+    return MeshCutter(model, representation, options, outlines, job).cuts_by_outline();
+}
+
+}  // namespace lodestone::povray

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/mesh/triangle_cutter.h"
+
+#include "base/hash.h"
+#include "base/maths.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace lodestone::povray {
+namespace {
+
+/// The part of a picture beside it that still counts as within.
+/// Taste: texture coordinates are rounded by less; a larger value shows the wrong border.
+constexpr double kEdge = 1e-4;
+/// A weight nearer to 0 is 0, so that no sliver is cut off.
+/// Taste: a thousandth of a texel of a picture of a thousand; a larger value moves corners.
+constexpr double kThin = 1e-6;
+/// Repetitions of a picture in a triangle from which on all of it counts as seen.
+/// Taste: a larger value looks at each of more repetitions.
+constexpr double kManyTiles = 16;
+
+bool repeats(const Texture& texture) {
+    return texture.extension == TextureExtension::Repeat ||
+           texture.extension == TextureExtension::Mirror;
+}
+
+struct PlaneBox {
+    glm::dvec2 low;
+    glm::dvec2 high;
+};
+
+PlaneBox box_of(const glm::dvec2 (&at)[3]) {
+    return {{std::min({at[0].x, at[1].x, at[2].x}), std::min({at[0].y, at[1].y, at[2].y})},
+            {std::max({at[0].x, at[1].x, at[2].x}), std::max({at[0].y, at[1].y, at[2].y})}};
+}
+
+/// The first and the last repetition of a picture along an axis that a range meets.
+std::pair<int64_t, int64_t> tiles(double low, double high) {
+    const auto first = static_cast<int64_t>(std::floor(low + kThin));
+    const auto last = static_cast<int64_t>(std::ceil(high - kThin)) - 1;
+    return {first, std::max(first, last)};
+}
+
+/// Whether a repetition is turned around.
+bool mirrored(const Texture& texture, int64_t tile) {
+    return texture.extension == TextureExtension::Mirror && (tile & 1) != 0;
+}
+
+/// Flags the blocks of one repetition that a triangle meets; `at` is relative to it.
+void note_tile(image::SeenTexels& seen, const glm::dvec2 (&at)[3]) {
+    const PlaneBox box = box_of(at);
+    const auto index = [](double place, int count) {
+        return std::clamp(static_cast<int>(std::floor(place * count)), 0, count - 1);
+    };
+    // Rows are counted from the top.
+    for (int row = index(1 - box.high.y, seen.rows); row <= index(1 - box.low.y, seen.rows);
+         ++row) {
+        const double top = 1 - static_cast<double>(row) / seen.rows;
+        const double bottom = 1 - static_cast<double>(row + 1) / seen.rows;
+        double low = kInfinity;
+        double high = -kInfinity;
+        const auto add = [&](double x) {
+            low = std::min(low, x);
+            high = std::max(high, x);
+        };
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec2& a = at[k];
+            const glm::dvec2& b = at[(k + 1) % 3];
+            if (a.y >= bottom && a.y <= top)
+                add(a.x);
+            for (const double y : {top, bottom}) {
+                if ((a.y < y) != (b.y < y))
+                    add(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+            }
+        }
+        if (!(low <= high) || high < 0 || low > 1)
+            continue;
+        uint8_t* flags =
+            seen.blocks.data() + static_cast<size_t>(row) * static_cast<size_t>(seen.columns);
+        std::fill(flags + index(low, seen.columns), flags + index(high, seen.columns) + 1,
+                  uint8_t{1});
+    }
+}
+
+/// A corner of a polygon that is cut, and the edge of the outline's triangle that it is on.
+struct CutCorner {
+    glm::dvec3 weights;
+    uint64_t key;
+};
+
+}  // namespace
+
+bool note_seen(image::SeenTexels& seen, const Texture& texture, const glm::dvec2 (&at)[3]) {
+    const PlaneBox box = box_of(at);
+    if (!repeats(texture)) {
+        const bool within = box.low.x >= -kEdge && box.low.y >= -kEdge && box.high.x <= 1 + kEdge &&
+                            box.high.y <= 1 + kEdge;
+        if (!within && (texture.extension != TextureExtension::Clip || texture.offset.x != 0))
+            return false;
+        if (box.high.x > 0 && box.low.x < 1 && box.high.y > 0 && box.low.y < 1)
+            note_tile(seen, at);
+        return true;
+    }
+    if ((box.high.x - box.low.x) * (box.high.y - box.low.y) > kManyTiles) {
+        std::fill(seen.blocks.begin(), seen.blocks.end(), uint8_t{1});
+        return true;
+    }
+    const auto [left, right] = tiles(box.low.x, box.high.x);
+    const auto [bottom, top] = tiles(box.low.y, box.high.y);
+    if ((right - left + 1) * (top - bottom + 1) > static_cast<int64_t>(4 * kManyTiles)) {
+        std::fill(seen.blocks.begin(), seen.blocks.end(), uint8_t{1});
+        return true;
+    }
+    for (int64_t row = bottom; row <= top; ++row) {
+        for (int64_t column = left; column <= right; ++column) {
+            glm::dvec2 here[3];
+            for (int k = 0; k < 3; ++k) {
+                here[k] = at[k] - glm::dvec2(column, row);
+                if (mirrored(texture, column))
+                    here[k].x = 1 - here[k].x;
+                if (mirrored(texture, row))
+                    here[k].y = 1 - here[k].y;
+            }
+            note_tile(seen, here);
+        }
+    }
+    return true;
+}
+
+TriangleCutter::TriangleCutter(const MaskOutline& outline, const Texture& texture)
+    : inside_(outline.inside), texture_(texture), visited_(outline.inside.triangles.size(), 0) {
+    // The squares along a side.
+    // Taste: about two triangles a square; more take longer to make than they save.
+    constexpr double kMostSquares = 64;
+    side_ = static_cast<int>(
+        std::clamp(std::sqrt(static_cast<double>(visited_.size()) / 2), 1.0, kMostSquares));
+    squares_.resize(static_cast<size_t>(side_) * static_cast<size_t>(side_));
+    const auto index = [&](double place) {
+        return std::clamp(static_cast<int>(std::floor(place * side_)), 0, side_ - 1);
+    };
+    for (uint32_t i = 0; i < visited_.size(); ++i) {
+        const glm::uvec3& t = inside_.triangles[i];
+        const glm::dvec2 at[3] = {inside_.points[t.x], inside_.points[t.y], inside_.points[t.z]};
+        const PlaneBox box = box_of(at);
+        for (int row = index(box.low.y); row <= index(box.high.y); ++row) {
+            for (int column = index(box.low.x); column <= index(box.high.x); ++column)
+                squares_[static_cast<size_t>(row * side_ + column)].push_back(i);
+        }
+    }
+}
+
+const CutTriangle& TriangleCutter::cut(const glm::dvec2 (&at)[3], size_t most) {
+    out_.outcome = CutOutcome::Pieces;
+    out_.corners.clear();
+    out_.triangles.clear();
+    const glm::dvec2 a = at[1] - at[0];
+    const glm::dvec2 b = at[2] - at[0];
+    const double twice = a.x * b.y - a.y * b.x;
+    const double longest = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(b - a, b - a)});
+    // Law: a line, to the rounding of texture coordinates in single precision.
+    constexpr double kLine = 1e-7;
+    if (!(std::abs(twice) > kLine * longest) || !(std::abs(twice) > 1e-300)) {
+        out_.outcome =
+            inside((at[0] + at[1] + at[2]) / 3.0) ? CutOutcome::Whole : CutOutcome::Pieces;
+        return out_;
+    }
+    // weights = (gradients . place) + constant
+    const glm::dvec2 across1(b.y / twice, -b.x / twice);
+    const glm::dvec2 across2(-a.y / twice, a.x / twice);
+    to_weights_[1] = {across1.x, across1.y, -glm::dot(across1, at[0])};
+    to_weights_[2] = {across2.x, across2.y, -glm::dot(across2, at[0])};
+    to_weights_[0] = glm::dvec3(0, 0, 1) - to_weights_[1] - to_weights_[2];
+    const PlaneBox box = box_of(at);
+    low_ = box.low;
+    high_ = box.high;
+    auto [left, right] = tiles(box.low.x, box.high.x);
+    auto [bottom, top] = tiles(box.low.y, box.high.y);
+    if (!repeats(texture_)) {
+        left = right = bottom = top = 0;
+    } else if (static_cast<double>(right - left + 1) * static_cast<double>(top - bottom + 1) >
+               4.0 * static_cast<double>(most)) {
+        out_.outcome = CutOutcome::TooMany;
+        return out_;
+    }
+    area_ = 0;
+    for (int64_t row = bottom; row <= top; ++row) {
+        for (int64_t column = left; column <= right; ++column) {
+            cut_tile(column, row);
+            if (out_.triangles.size() > most) {
+                out_.outcome = CutOutcome::TooMany;
+                return out_;
+            }
+        }
+    }
+    // The share of a triangle that may be missing of a whole one.
+    // Taste: slivers between repetitions; a larger value fills holes.
+    constexpr double kWhole = 1e-4;
+    if (area_ >= 1 - kWhole)
+        out_.outcome = CutOutcome::Whole;
+    return out_;
+}
+
+bool TriangleCutter::inside(const glm::dvec2& at) const {
+    glm::dvec2 place = at;
+    for (int i = 0; i < 2; ++i) {
+        if (!repeats(texture_)) {
+            if (texture_.extension == TextureExtension::Clip && (at[i] < 0 || at[i] > 1))
+                return false;
+            place[i] = std::clamp(at[i], 0.0, 1.0);
+            continue;
+        }
+        const double tile = std::floor(at[i]);
+        place[i] = at[i] - tile;
+        if (mirrored(texture_, static_cast<int64_t>(tile)))
+            place[i] = 1 - place[i];
+    }
+    const auto index = [&](double along) {
+        return std::clamp(static_cast<int>(std::floor(along * side_)), 0, side_ - 1);
+    };
+    const auto turn = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+        return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    };
+    const std::vector<uint32_t>& near =
+        squares_[static_cast<size_t>(index(place.y) * side_ + index(place.x))];
+    return std::any_of(near.begin(), near.end(), [&](uint32_t i) {
+        const glm::uvec3& t = inside_.triangles[i];
+        const glm::dvec2& a = inside_.points[t.x];
+        const glm::dvec2& b = inside_.points[t.y];
+        const glm::dvec2& c = inside_.points[t.z];
+        return turn(a, b, place) >= 0 && turn(b, c, place) >= 0 && turn(c, a, place) >= 0;
+    });
+}
+
+void TriangleCutter::cut_tile(int64_t column, int64_t row) {
+    ++visit_;
+    known_count_ = 0;
+    // A point p of the picture lies at origin + sign * p.
+    glm::dvec2 origin(column, row);
+    glm::dvec2 sign(1.0);
+    if (mirrored(texture_, column)) {
+        origin.x += 1;
+        sign.x = -1;
+    }
+    if (mirrored(texture_, row)) {
+        origin.y += 1;
+        sign.y = -1;
+    }
+    glm::dvec2 low = (low_ - origin) / sign;
+    glm::dvec2 high = (high_ - origin) / sign;
+    for (int i = 0; i < 2; ++i) {
+        if (low[i] > high[i])
+            std::swap(low[i], high[i]);
+    }
+    const auto index = [&](double place) {
+        return static_cast<int>(std::clamp(std::floor(place * side_), 0.0, side_ - 1.0));
+    };
+    for (int y = index(low.y); y <= index(high.y); ++y) {
+        for (int x = index(low.x); x <= index(high.x); ++x) {
+            for (const uint32_t piece : squares_[static_cast<size_t>(y * side_ + x)]) {
+                if (std::exchange(visited_[piece], visit_) != visit_)
+                    cut_piece(piece, origin, sign);
+            }
+        }
+    }
+}
+
+uint32_t TriangleCutter::corner(uint64_t key, const glm::dvec3& weights) {
+    if (2 * known_count_ >= known_.size()) {
+        std::vector<KnownCorner> larger(2 * known_.size());
+        for (const KnownCorner& old : known_) {
+            size_t at = old.key & (larger.size() - 1);
+            while (old.visit == visit_ && larger[at].visit == visit_)
+                at = (at + 1) & (larger.size() - 1);
+            if (old.visit == visit_)
+                larger[at] = old;
+        }
+        known_ = std::move(larger);
+    }
+    size_t at = key & (known_.size() - 1);
+    while (known_[at].visit == visit_ && known_[at].key != key)
+        at = (at + 1) & (known_.size() - 1);
+    if (known_[at].visit != visit_) {
+        known_[at] = {key, visit_, static_cast<uint32_t>(out_.corners.size())};
+        out_.corners.push_back(weights);
+        ++known_count_;
+    }
+    return known_[at].number;
+}
+
+/// Cuts one triangle of the outline by the three sides of the triangle (Sutherland and Hodgman
+/// 1974), in its weights: a side is where one of them is 0.
+void TriangleCutter::cut_piece(uint32_t piece, const glm::dvec2& origin, const glm::dvec2& sign) {
+    // Law: three corners, and one more for each side that cuts.
+    constexpr size_t kMostPolygon = 9;
+    std::array<CutCorner, kMostPolygon> polygon;
+    std::array<CutCorner, kMostPolygon> next;
+    size_t count = 3;
+    for (int k = 0; k < 3; ++k) {
+        const uint32_t point = inside_.triangles[piece][k];
+        const glm::dvec2 at = origin + sign * inside_.points[point];
+        glm::dvec3 weights;
+        for (int i = 0; i < 3; ++i) {
+            weights[i] = to_weights_[i].x * at.x + to_weights_[i].y * at.y + to_weights_[i].z;
+            if (std::abs(weights[i]) < kThin)
+                weights[i] = 0;
+        }
+        polygon[static_cast<size_t>(k)] = {weights, Hasher().value(point).result()};
+    }
+    for (int side = 0; side < 3; ++side) {  // most are far from most triangles
+        if (polygon[0].weights[side] <= 0 && polygon[1].weights[side] <= 0 &&
+            polygon[2].weights[side] <= 0)
+            return;
+    }
+    for (int side = 0; side < 3; ++side) {
+        size_t left = 0;
+        for (size_t i = 0; i < count; ++i) {
+            const CutCorner& a = polygon[i];
+            const CutCorner& b = polygon[(i + 1) % count];
+            const double wa = a.weights[side];
+            const double wb = b.weights[side];
+            if (wa >= 0)
+                next[left++] = a;
+            if ((wa > 0 && wb < 0) || (wa < 0 && wb > 0)) {
+                // Neighbors find the same corner, to the bit: the edge has one direction.
+                const CutCorner& from = a.key < b.key ? a : b;
+                const CutCorner& to = a.key < b.key ? b : a;
+                const double part = from.weights[side] / (from.weights[side] - to.weights[side]);
+                glm::dvec3 weights = from.weights + part * (to.weights - from.weights);
+                weights[side] = 0;
+                next[left++] = {weights,
+                                Hasher().value(from.key).value(to.key).value(side).result()};
+            }
+        }
+        std::swap(polygon, next);
+        count = left;
+        if (count < 3)
+            return;
+    }
+    double twice = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const glm::dvec3& a = polygon[i].weights;
+        const glm::dvec3& b = polygon[(i + 1) % count].weights;
+        twice += a.y * b.z - a.z * b.y;
+    }
+    if (!(std::abs(twice) > kThin * kThin))
+        return;
+    area_ += std::abs(twice);
+    if (twice < 0)
+        std::reverse(polygon.begin(), polygon.begin() + static_cast<ptrdiff_t>(count));
+    std::array<uint32_t, kMostPolygon> numbers;
+    for (size_t i = 0; i < count; ++i)
+        numbers[i] = corner(polygon[i].key, polygon[i].weights);
+    for (size_t i = 2; i < count; ++i) {
+        if (numbers[0] != numbers[i - 1] && numbers[i - 1] != numbers[i] &&
+            numbers[i] != numbers[0])
+            out_.triangles.emplace_back(numbers[0], numbers[i - 1], numbers[i]);
+    }
+}
+
+}  // namespace lodestone::povray
