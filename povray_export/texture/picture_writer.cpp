@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "image/mask_texels.h"
 #include "image/texture_sampler.h"
 #include "povray_export/scene/povray_number.h"
 #include "povray_export/texture/height_map.h"
@@ -102,6 +103,48 @@ image::Image halved(const image::Image& from, int halvings) {
     return to;
 }
 
+bool is_number(PigmentContent content) {
+    return content == PigmentContent::Number || content == PigmentContent::Alpha;
+}
+
+/// Whether the numbers of a picture are a mask's.
+bool is_mask(const image::Image& picture) {
+    image::MaskTexels texels{picture.width, picture.height, {}};
+    for (size_t i = 0; i < picture.pixels.size(); i += 4)
+        texels.alpha.push_back(static_cast<uint8_t>(std::lround(255 * picture.pixels[i])));
+    image::SeenTexels seen = image::unseen_texels(picture.width, picture.height);
+    std::fill(seen.blocks.begin(), seen.blocks.end(), uint8_t{1});
+    return image::count(texels, seen).is_mask();
+}
+
+/// Makes the numbers of a mask that was made smaller 0 or 1, but for its edges, of the same mean:
+/// else all of a tree far away is half clear, and rays go on through each of its leaves.
+void sharpen(image::Image& picture) {
+    // The factor on differences to the level that becomes 1/2.
+    // Taste: edges of half a texel; a larger value draws steps.
+    constexpr float kSlope = 4;
+    const auto sharp = [](float value, float level) {
+        return std::clamp(0.5f + kSlope * (value - level), 0.0f, 1.0f);
+    };
+    double sum = 0;
+    for (size_t i = 0; i < picture.pixels.size(); i += 4)
+        sum += static_cast<double>(picture.pixels[i]);
+    float low = -0.5f;
+    float high = 1.5f;
+    // Law: 2^-12 of the range is finer than a step of 8 bits.
+    for (int step = 0; step < 12; ++step) {
+        const float level = (low + high) / 2;
+        double found = 0;
+        for (size_t i = 0; i < picture.pixels.size(); i += 4)
+            found += static_cast<double>(sharp(picture.pixels[i], level));
+        (found > sum ? low : high) = level;
+    }
+    for (size_t i = 0; i < picture.pixels.size(); ++i) {
+        if (i % 4 != 3)
+            picture.pixels[i] = sharp(picture.pixels[i], (low + high) / 2);
+    }
+}
+
 std::string baked(const Texture& texture, PigmentContent content, int halvings) {
     if (content == PigmentContent::Height)
         return png_of(*height_map(texture));
@@ -113,7 +156,7 @@ std::string baked(const Texture& texture, PigmentContent content, int halvings) 
     for (size_t i = 0; i < from.pixels.size(); i += 4) {
         const glm::dvec4 texel(from.pixels[i], from.pixels[i + 1], from.pixels[i + 2],
                                from.pixels[i + 3]);
-        if (content != PigmentContent::Number) {
+        if (!is_number(content)) {
             const glm::dvec3 color = glm::clamp(image::color_of(texture, texel), 0.0, 1.0);
             for (int c = 0; c < 3; ++c)
                 to.pixels[i + static_cast<size_t>(c)] = static_cast<float>(color[c]);
@@ -125,9 +168,12 @@ std::string baked(const Texture& texture, PigmentContent content, int halvings) 
         to.pixels[i + 3] = 1;
     }
     from.pixels.clear();
+    const bool mask = halvings > 0 && content == PigmentContent::Alpha && is_mask(to);
     if (halvings > 0)
         to = halved(to, halvings);
-    if (content != PigmentContent::Number) {
+    if (mask)
+        sharpen(to);
+    if (!is_number(content)) {
         for (size_t i = 0; i < to.pixels.size(); ++i) {
             if (i % 4 != 3)
                 to.pixels[i] = encode_srgb(to.pixels[i]);
@@ -225,6 +271,8 @@ int halvings_of(const Texture& texture, double texel) {
 }
 
 std::string PictureWriter::file_of(const Texture& texture, PigmentContent content, int halvings) {
+    if (content == PigmentContent::Alpha && halvings == 0)
+        content = PigmentContent::Number;
     const Picture& picture = *texture.picture;
     if (picture.bytes.empty())
         fail(Status::Internal, "the picture '", picture.name, "' is not resident");

@@ -105,8 +105,12 @@ private:
 
     bool shown(const Texture& texture) const { return texture && surface_.uvs; }
 
-    std::string pigment(const Texture& texture, PigmentContent content) {
-        return "uv_mapping " + pictures_.pigment(texture, content, surface_.range);
+    /// `whole`: the picture is not made smaller.
+    std::string pigment(const Texture& texture, PigmentContent content, bool whole = false) {
+        UvRange range = surface_.range;
+        if (whole)
+            range.texel = 0;
+        return "uv_mapping " + pictures_.pigment(texture, content, range);
     }
 
     /// The text of the bumps. POV-Ray's bump_map knows no direction of u, so the height is a
@@ -176,8 +180,9 @@ private:
     }
 
     /// Blends entries by the number of a texture.
-    Body blended(const Texture& texture, const Entries& entries) {
-        return "pigment_pattern{" + pigment(texture, PigmentContent::Number) + '}' + map(entries);
+    Body blended(const Texture& texture, const Entries& entries,
+                 PigmentContent content = PigmentContent::Number, bool whole = false) {
+        return "pigment_pattern{" + pigment(texture, content, whole) + '}' + map(entries);
     }
 
     /// The average: (1 - second) of a and second of b.
@@ -204,14 +209,18 @@ private:
             return average(kClear, body, alpha);
         }
         if (!clip)
-            return average(kClear, blended(material.alpha_texture, {{0, kClear}, {1, body}}),
-                           paint);
+            return average(
+                kClear,
+                blended(material.alpha_texture, {{0, kClear}, {1, body}}, PigmentContent::Alpha),
+                paint);
         if (cutoff <= 0)
             return body;
         const double least = paint > 0 ? cutoff / paint : 2;
         if (least > 1)
             return kClear;
-        return blended(material.alpha_texture, {{least, kClear}, {least, body}});
+        // Means of texels would lose what is thinner than they are.
+        return blended(material.alpha_texture, {{least, kClear}, {least, body}},
+                       PigmentContent::Number, true);
     }
 
     Body rough(const Material& material) {

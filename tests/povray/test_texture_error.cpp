@@ -105,6 +105,46 @@ TEST(PovrayTextureError, AMappingThatShowsLessOfThePictureKeepsMoreOfIt) {
     EXPECT_EQ(written(texture, square(), 2, 1), std::min(kSide, 8 * whole));
 }
 
+TEST(PovrayTextureError, AMaskThatIsMadeSmallerIsNoFog) {
+    // Leaves of five texels, here and there, through a material that is not cut.
+    for (const bool mask : {true, false}) {
+        std::vector<glm::vec4> texels;
+        double mean = 0;
+        for (int i = 0; i < kSide * kSide; ++i) {
+            const auto leaf = static_cast<uint32_t>(i % kSide / 5 + 1000 * (i / kSide / 5));
+            const float share = static_cast<float>(leaf * 2654435761u >> 16u) / 65535;
+            texels.emplace_back(1, 1, 1, mask ? std::round(share) : share);
+            mean += static_cast<double>(texels.back().w) / (kSide * kSide);
+        }
+        Texture texture = texture_of(scenes::picture(kSide, texels));
+        texture.channel = TextureChannel::Alpha;
+        PictureWriter pictures;
+        UvRange range;
+        range.texel = 8.0 / kSide;
+        pictures.pigment(texture, PigmentContent::Alpha, range);
+        const std::filesystem::path folder = own_scratch() / (mask ? "mask" : "blend");
+        std::filesystem::remove_all(folder);
+        PictureFolder files(folder);
+        pictures.write(files);
+        for (const auto& entry : std::filesystem::directory_iterator(folder / "i")) {
+            const image::Image image = image::read(entry.path());
+            EXPECT_EQ(image.width, kSide / 8);
+            double sum = 0;
+            double between = 0;
+            for (size_t i = 0; i < image.pixels.size(); i += 4) {
+                sum += static_cast<double>(image.pixels[i]);
+                between += image.pixels[i] > 0.1f && image.pixels[i] < 0.9f ? 1 : 0;
+            }
+            const auto count = static_cast<double>(image.size());
+            EXPECT_NEAR(sum / count, mean, 0.01);
+            if (mask)
+                EXPECT_LT(between / count, 0.4);
+            else
+                EXPECT_GT(between / count, 0.8);
+        }
+    }
+}
+
 TEST(PovrayTextureError, HalvingKeepsTheMeanLight) {
     const Texture texture = texture_of(stripes());
     EXPECT_EQ(halvings_of(texture, 0), 0);
