@@ -16,7 +16,7 @@ enum class CutOutcome : uint8_t {
     TooMany,  // more pieces than asked for
 };
 
-/// The rest of a triangle: corners by the weights of its three corners.
+/// The pieces of a triangle that are left: corners by the weights of its three corners.
 struct CutTriangle {
     CutOutcome outcome = CutOutcome::Pieces;
     std::vector<glm::dvec3> corners;

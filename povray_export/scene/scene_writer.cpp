@@ -8,9 +8,8 @@
 #include "povray_export/lamp/light_writer.h"
 #include "povray_export/lamp/renderer_surfaces.h"
 #include "povray_export/lamp/scene_lights.h"
-#include "povray_export/mesh/clear_layers.h"
-#include "povray_export/run/povray_runner.h"
 #include "povray_export/scene/camera_writer.h"
+#include "povray_export/scene/clear_surfaces.h"
 #include "povray_export/scene/include_files.h"
 #include "povray_export/scene/invertible_transform.h"
 #include "povray_export/scene/magnification.h"
@@ -26,7 +25,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <span>
 
@@ -265,33 +263,14 @@ private:
         }
     }
 
-    /// The object with the most clear surfaces behind each other in all of its occurrences, as a
-    /// comment that render_scene() reads, and a problem where POV-Ray may not bear those of one.
     std::string layers_text() {
-        std::map<ObjectIndex, double> sums;
-        const OccurrenceUse* deepest = nullptr;
-        double most = 0;
+        std::vector<ClearOccurrence> clear;
         for (const OccurrenceUse& use : uses_) {
             const double layers = includes_.at(use.file).clear_layers;
-            if (!(layers > 0) || (use.hidden & kCameraRays) != 0)
-                continue;
-            const double sum = sums[cut_.nodes[use.node].object] += layers;
-            if (sum > most) {
-                most = sum;
-                deepest = &use;
-            }
-            if (layers > kMostLayers)
-                problems_.push_back({called(use.node), Severity::Warning, "clear_layers",
-                                     text("has about ", std::lround(layers),
-                                          " half-clear surfaces one behind the other; POV-Ray may "
-                                          "not bear more than 250")});
+            if (layers > 0 && (use.hidden & kCameraRays) == 0)
+                clear.push_back({use.node, layers});
         }
-        if (deepest == nullptr)
-            return "";
-        std::string out = kClearObject;
-        append_count(out, static_cast<uint64_t>(std::min(most, 1e9)));
-        append_name(out += ' ', model_, cut_, deepest->node);
-        return out + '\n';
+        return clear_surfaces_text(model_, cut_, clear, problems_);
     }
 
     void write_text(const char* name, const std::string& text) {
