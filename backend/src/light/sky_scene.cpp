@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "light/sky_scene.h"
+
+#include "base/parallel.h"
+
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace lodestone::light {
+namespace {
+
+/// The share of light that goes through a material's body, where it is there at all.
+double transmitted(const Material& material) {
+    return limited(material.transmission, 0, 1) * (1 - limited(material.metallic, 0, 1));
+}
+
+bool lets_light_through(const Material& material) {
+    const bool covered =
+        material.alpha_mode == AlphaMode::Opaque ||
+        (!material.alpha_texture && material.alpha >= 1 && !material.vertex_colors);
+    return !covered || transmitted(material) > 0 ||
+           (material.other && lets_light_through(*material.other));
+}
+
+/// The material with what it transmits as a part of its alpha: rays go through glass.
+Material clear_material(const Material& material) {
+    Material out = material;
+    const double through = transmitted(material);
+    if (through > 0) {
+        if (material.alpha_mode == AlphaMode::Opaque) {
+            out.alpha = 1;
+            out.alpha_texture = {};
+        }
+        if (material.alpha_mode != AlphaMode::Clip) {
+            out.alpha_mode = AlphaMode::Blend;
+            out.alpha = limited(out.alpha, 0, 1) * (1 - through);
+            out.alpha_texture.scale *= 1 - through;
+            out.alpha_texture.offset *= 1 - through;
+        } else if (through >= 0.5) {  // a mask of glass is a mask or nothing
+            out.alpha = 0;
+            out.alpha_texture = {};
+        }
+    }
+    if (material.other)
+        out.other = std::make_shared<const Material>(clear_material(*material.other));
+    return out;
+}
+
+bool meets_back(const Mesh& mesh, uint32_t triangle, const glm::dvec3& direction) {
+    return glm::dot(area_vector(mesh, triangle), direction) > 0;
+}
+
+}  // namespace
+
+SkySurface SkySurfaces::made(const Representation& representation) {
+    SkySurface out;
+    if (representation.summary.kind == Kind::Mesh && representation.resident())
+        out.mesh = std::get<std::shared_ptr<const Mesh>>(representation.payload);
+    else
+        out.mesh = std::make_shared<const Mesh>(tessellated(representation));
+    std::vector<Material> materials;
+    for (const uint32_t index : representation.materials) {
+        const Material* material =
+            index < model_.materials.size() ? &model_.materials[index] : nullptr;
+        materials.push_back(material != nullptr ? clear_material(*material) : Material{});
+        out.see_through.push_back(material != nullptr && lets_light_through(*material) ? 1 : 0);
+        out.materials.push_back(index);
+    }
+    const bool any = std::find(out.see_through.begin(), out.see_through.end(), uint8_t{1}) !=
+                     out.see_through.end();
+    ray::SkinPtr skin =
+        any ? std::make_shared<const ray::MeshSkin>(materials, texels_) : ray::SkinPtr{};
+    out.scene = std::make_shared<const ray::MeshScene>(*out.mesh, std::move(skin));
+    return out;
+}
+
+ray::SkinPtr SkySurfaces::skin_of_model() const {
+    return skin_;
+}
+
+void SkySurfaces::add(std::span<const Representation* const> representations, const Job& job) {
+    std::vector<std::pair<const Representation*, SkySurface*>> fresh;
+    for (const Representation* representation : representations) {
+        const auto [at, is_new] = known_.try_emplace(representation->summary.hash);
+        if (is_new)
+            fresh.emplace_back(representation, &at->second);
+    }
+    parallel_for(fresh.size(), [&](size_t i) {
+        job.check();
+        *fresh[i].second = made(*fresh[i].first);
+    });
+    if (skin_ || std::none_of(model_.materials.begin(), model_.materials.end(), lets_light_through))
+        return;
+    std::vector<Material> materials;
+    for (const Material& material : model_.materials)
+        materials.push_back(clear_material(material));
+    skin_ = std::make_shared<const ray::MeshSkin>(materials, texels_);
+}
+
+void SkyScene::join(const SkyOccluder& occluder, const SkySurface& surface) {
+    const Mesh& mesh = *surface.mesh;
+    const bool mirrored = glm::determinant(occluder.world.linear) < 0;
+    for (JoinedMesh* joined : {&opaque_, &clear_}) {
+        const bool clear = joined == &clear_;
+        Mesh& all = joined->mesh;
+        std::vector<uint32_t> numbers(mesh.positions.size(), ~uint32_t{0});
+        for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const uint16_t slot = mesh.slot(i);
+            if (surface.opaque_slot(slot) == clear)
+                continue;
+            Triangle t = mesh.triangles[i];
+            if (mirrored)
+                std::swap(t.y, t.z);
+            for (int corner = 0; corner < 3; ++corner) {
+                const uint32_t vertex = t[corner];
+                if (numbers[vertex] == ~uint32_t{0}) {
+                    numbers[vertex] = static_cast<uint32_t>(all.positions.size());
+                    all.positions.emplace_back(occluder.world(glm::dvec3(mesh.positions[vertex])) -
+                                               center_);
+                    if (clear) {
+                        all.uvs.push_back(mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[vertex]);
+                        all.colors.push_back(mesh.colors.empty() ? glm::vec4(1.0f)
+                                                                 : mesh.colors[vertex]);
+                    }
+                }
+                t[corner] = numbers[vertex];
+            }
+            all.triangles.push_back(t);
+            if (clear)
+                all.slots.push_back(static_cast<uint16_t>(surface.materials[slot]));
+        }
+    }
+}
+
+SkyScene::SkyScene(const Model& model, const SkySurfaces& surfaces,
+                   std::span<const SkyOccluder> occluders, const Job& job)
+    : occluders_(occluders) {
+    std::unordered_map<Hash, uint64_t> counts;
+    for (const SkyOccluder& occluder : occluders)
+        ++counts[occluder.representation->summary.hash];
+    // Meshes that are placed seldom are joined first.
+    std::vector<std::pair<uint64_t, uint32_t>> order;
+    order.reserve(occluders.size());
+    Box3 box;
+    for (uint32_t i = 0; i < occluders.size(); ++i) {
+        const RepresentationSummary& summary = occluders[i].representation->summary;
+        surfaces_.push_back(&surfaces.of(*occluders[i].representation));
+        order.emplace_back(counts[summary.hash], i);
+        if (!summary.bound.empty() && occluders[i].world.finite())
+            box.add(transformed(summary.bound, occluders[i].world).box);
+    }
+    std::sort(order.begin(), order.end());
+    size_ = glm::length(box.size());
+    if (!box.empty() && std::isfinite(size_))
+        center_ = box.center();
+    uint64_t triangles = 0;
+    // Slots have 16 bits.
+    const bool materials_fit = model.materials.size() < 0xffffu;
+    for (const auto& [count, i] : order) {
+        const SkyOccluder& occluder = occluders[i];
+        const SkySurface& surface = *surfaces_[i];
+        if ((i & 255u) == 0)
+            job.check();
+        // Coordinates of the joined mesh have single precision.
+        const bool fits =
+            occluder.world.finite() && largest(glm::abs(occluder.world.offset)) < 1e30;
+        triangles += surface.mesh->triangles.size();
+        if (fits && triangles <= kMostJoined && (materials_fit || surface.see_through.empty()))
+            join(occluder, surface);
+        else
+            placed_.add(surface.scene, occluder.representation->summary.bound, occluder.world, i);
+    }
+    placed_.finish();
+    if (!opaque_.mesh.triangles.empty())
+        opaque_.scene.emplace(opaque_.mesh);
+    if (!clear_.mesh.triangles.empty())
+        clear_.scene.emplace(clear_.mesh, surfaces.skin_of_model());
+}
+
+SkyScene::SkyBlock SkyScene::first_block(const glm::dvec3& from,
+                                         const glm::dvec3& direction) const {
+    SkyBlock out;
+    if (opaque_.scene) {
+        const ray::RayHit hit = opaque_.scene->first_hit(from - center_, direction);
+        if (hit.hit)
+            out = {hit.t, meets_back(opaque_.mesh, hit.triangle, direction)};
+    }
+    const ray::PlacedScenes::PlacedHit hit = placed_.first_hit(from, direction, out.t);
+    if (!hit.hit)
+        return out;
+    const SkySurface& surface = *surfaces_[hit.name];
+    const Affine& world = occluders_[hit.name].world;
+    const bool mirrored = glm::determinant(world.linear) < 0;
+    const bool back =
+        meets_back(*surface.mesh, hit.triangle, glm::inverse(world.linear) * direction);
+    return {hit.t, surface.opaque_slot(surface.mesh->slot(hit.triangle)) && back != mirrored};
+}
+
+SkyScene::SkyBlock first_block(const SkySurface& surface, const glm::dvec3& from,
+                               const glm::dvec3& direction) {
+    const ray::RayHit hit = surface.scene->first_hit(from, direction);
+    if (!hit.hit)
+        return {};
+    return {hit.t, surface.opaque_slot(surface.mesh->slot(hit.triangle)) &&
+                       meets_back(*surface.mesh, hit.triangle, direction)};
+}
+
+}  // namespace lodestone::light
