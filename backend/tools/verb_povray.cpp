@@ -125,6 +125,12 @@ int run_povray(const CommandArguments& arguments) {
     if (arguments.has("light-error"))
         options.light_error = arguments.number("light-error", 0, 0, 1e6);
     options.bounces = static_cast<int32_t>(arguments.number("bounces", 0, 0, 8));
+    if (arguments.has("sky-occlusion")) {
+        const auto rays = static_cast<int32_t>(arguments.number("sky-occlusion", 0, 0, 1024));
+        options.sky_rays = rays > 0 ? rays : -1;
+    }
+    if (fs::is_directory(input))
+        options.bake_folder = input.c_str();
     const char* found = nullptr;
     check(lds_povray_find(options.program, &found));
 
@@ -181,7 +187,8 @@ int run_povray(const CommandArguments& arguments) {
                                        {"cpu_s", exported.cpu_s},
                                        {"lamps", exported.lamps},
                                        {"lights_each", exported.lights_each},
-                                       {"unseen", exported.unseen}}});
+                                       {"unseen", exported.unseen},
+                                       {"sky_copies", exported.sky_copies}}});
     report.push_back({"povray", Fields{{"parse_cpu_s", rendered.parse_cpu_s},
                                        {"trace_cpu_s", rendered.trace_cpu_s},
                                        {"wall_s", rendered.wall_s},

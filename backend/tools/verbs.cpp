@@ -115,6 +115,8 @@ const std::vector<CommandVerb>& verbs() {
           {"antialias", "HOW", "off, final (default) or reference"},
           {"light-error", "PX",
            "the same for lights alone (default: as pixel-error; 0 = all lamps as they are)"},
+          {"sky-occlusion", "N",
+           "rays by which a corner finds its share of the sky (default 128; 0: all see all of it)"},
           {"bounces", "N", "of light from surface to surface (default 0: direct light only)"},
           {"false-color", "", "paint by kind and level of detail"},
           {"scene", "DIR", "keep the files for POV-Ray in this folder"},

@@ -55,6 +55,12 @@ Key rounded(Key key, uint64_t step) {
     return out;
 }
 
+/// Another key for each grade of the sky's light: equal ones of different colors, which are as
+/// likely as a collision of hashes, only count as one.
+Key graded(Key key, uint8_t grade) {
+    return key ^ (0x9e3779b97f4a7c15u * (uint64_t{grade} + 1));
+}
+
 glm::dvec4 color_of_key(Key key) {
     glm::dvec4 color;
     for (int i = 3; i >= 0; --i, key >>= 16u) {
@@ -78,7 +84,11 @@ Key hue_of(Key key) {
 MeshTextures::MeshTextures(const Model& model, const Representation& representation,
                            const CutMesh& cut, const RepresentationOptions& options,
                            PictureWriter& pictures, const Job& job)
-    : mesh_(representation.mesh()), cut_(cut), shown_(cut.any ? cut.mesh : mesh_), job_(job) {
+    : mesh_(representation.mesh()),
+      cut_(cut),
+      shown_(cut.any ? cut.mesh : mesh_),
+      job_(job),
+      sky_(options.sky) {
     find_slots(model, representation, options.uvs && !mesh_.uvs.empty());
     if (uses_uvs_)
         find_ranges();
@@ -88,7 +98,9 @@ MeshTextures::MeshTextures(const Model& model, const Representation& representat
     bool corners = false;
     for (TexturedSlot& slot : slots_) {
         refraction_ = std::max(refraction_, refraction_of(slot.material));
-        if (slot.colored || !slot.planes.empty())
+        if (sky_)
+            slot.surface.sky = share_of_grade(grade_of_share(sky_->factor));
+        if (slot.colored || !slot.planes.empty() || (sky_ && sky_->shares))
             corners = true;
         else
             slot.text = add(slot, pictures);
@@ -142,8 +154,11 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
             slot.material.alpha_mode = AlphaMode::Opaque;
             slot.material.alpha_texture = {};
         }
-        for (const Material* m = &slot.material; m != nullptr; m = m->other.get())
+        for (const Material* m = &slot.material; m != nullptr; m = m->other.get()) {
             slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
+            // Rays through a triangle meet all textures of its corners.
+            slot.even_sky = slot.even_sky || m->alpha_mode != AlphaMode::Opaque;
+        }
         slot.surface.uvs = uvs && textured(slot.material);
         uses_uvs_ = uses_uvs_ || slot.surface.uvs;
         slot.bumped = slot.surface.uvs && bumpy(slot.material);
@@ -277,6 +292,39 @@ bool MeshTextures::plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane)
     return true;
 }
 
+uint8_t MeshTextures::sky_grade(size_t triangle, int corner) const {
+    if (!sky_ || !sky_->shares)
+        return kSkyGrades - 1;
+    const size_t source = cut_.any ? cut_.sources[triangle] : triangle;
+    const bool whole = !cut_.any || shown_.triangles[triangle] == mesh_.triangles[source];
+    if (whole && !slots_[slot_at_[mesh_.slot(source)]].even_sky)
+        return sky_->grade(source, corner);
+    int sum = 1;  // rounds to the nearest
+    for (int i = 0; i < 3; ++i)
+        sum += sky_->grade(source, i);
+    return static_cast<uint8_t>(sum / 3);
+}
+
+/// The number of different colors, with their grades of the sky's light, once colors are rounded;
+/// it stops beyond kMost.
+size_t MeshTextures::distinct_looks(const std::vector<Key>& keys, uint64_t step) const {
+    std::unordered_set<Key> distinct;
+    if (!sky_ || !sky_->shares) {
+        for (size_t i = 0; i < keys.size() && distinct.size() <= kMost; ++i) {
+            check_job_sometimes(i);
+            distinct.insert(rounded(keys[i], step));
+        }
+        return distinct.size();
+    }
+    for (size_t i = 0; i < shown_.triangles.size() && distinct.size() <= kMost; ++i) {
+        check_job_sometimes(i);
+        for (int corner = 0; corner < 3; ++corner)
+            distinct.insert(
+                graded(rounded(keys[shown_.triangles[i][corner]], step), sky_grade(i, corner)));
+    }
+    return distinct.size();
+}
+
 std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
     std::vector<Key> keys(shown_.colors.size());
     bool alpha = false;
@@ -293,12 +341,7 @@ std::vector<Key> MeshTextures::color_keys(glm::dvec3& hue) const {
     }
     // Colors are first rounded to 8 bits, then coarser until they are few enough.
     for (uint64_t step = 1;; step = step == 1 ? 257 : step + std::max<uint64_t>(257, step / 4)) {
-        std::unordered_set<Key> distinct;
-        for (size_t i = 0; i < keys.size() && distinct.size() <= kMost; ++i) {
-            check_job_sometimes(i);
-            distinct.insert(rounded(keys[i], step));
-        }
-        if (distinct.size() > kMost)
+        if (distinct_looks(keys, step) > kMost)
             continue;
         for (Key& key : keys)
             key = rounded(key, step);
@@ -325,12 +368,18 @@ void MeshTextures::find_corners(PictureWriter& pictures) {
     const bool colored = std::any_of(slots_.begin(), slots_.end(),
                                      [](const TexturedSlot& slot) { return slot.colored; });
     const std::vector<Key> keys = colored ? color_keys(hue) : std::vector<Key>();
-    std::vector<std::unordered_map<Key, uint32_t>> texts(slots_.size() * (kMostPlanes + 1));
-    const auto text_of = [&](size_t at, size_t plane, Key key) {
-        const auto [found, fresh] = texts[at * (kMostPlanes + 1) + plane].try_emplace(key, 0);
+    const bool lit = sky_ && sky_->shares;
+    const size_t planes = kMostPlanes + 1;
+    std::vector<std::unordered_map<Key, uint32_t>> texts(slots_.size() * planes *
+                                                         (lit ? kSkyGrades : 1));
+    const auto text_of = [&](size_t at, size_t plane, Key key, uint8_t grade) {
+        const size_t place = (lit ? grade * slots_.size() + at : at) * planes + plane;
+        const auto [found, fresh] = texts[place].try_emplace(key, 0);
         if (!fresh)
             return found->second;
         TexturedSlot slot = slots_[at];
+        if (lit)
+            slot.surface.sky = share_of_grade(grade);
         if (plane < slot.planes.size()) {
             slot.surface.flat = true;
             slot.surface.to_uv = slot.planes[plane];
@@ -352,7 +401,8 @@ void MeshTextures::find_corners(PictureWriter& pictures) {
         const size_t plane = plane_of_.empty() ? kMostPlanes : plane_of_[source];
         for (int corner = 0; corner < 3; ++corner)
             corners_[3 * i + static_cast<size_t>(corner)] =
-                text_of(at, plane, slots_[at].colored ? keys[shown_.triangles[i][corner]] : 0);
+                text_of(at, plane, slots_[at].colored ? keys[shown_.triangles[i][corner]] : 0,
+                        sky_grade(i, corner));
     }
 }
 

@@ -16,7 +16,8 @@ namespace lodestone::povray {
 
 /// The materials of slots, times the colors of vertices where a material uses them: a texture for
 /// every distinct color. More than kMost colors are rounded, in display encoding, as little as it
-/// takes; rounding by 2/255 keeps a difference nobody sees. Bumps need a texture for every plane.
+/// takes; rounding by 2/255 keeps a difference nobody sees. Bumps need a texture for every plane,
+/// and corners that see different shares of the sky one for every grade.
 class MeshTextures {
 public:
     /// The most textures of one mesh.
@@ -57,6 +58,7 @@ private:
         TexturedSurface surface;
         bool colored = false;
         bool bumped = false;
+        bool even_sky = false;       // true: a grade of the sky's light for each triangle
         std::vector<Affine> planes;  // to_uv of its flat parts, where it is bumped
         size_t text = 0;             // where it is neither
     };
@@ -67,6 +69,8 @@ private:
     void find_planes();
     bool plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane) const;
     std::vector<uint64_t> color_keys(glm::dvec3& hue) const;
+    size_t distinct_looks(const std::vector<uint64_t>& keys, uint64_t step) const;
+    uint8_t sky_grade(size_t triangle, int corner) const;
     void find_corners(PictureWriter& pictures);
     size_t add(const TexturedSlot& slot, PictureWriter& pictures);
     void check_job_sometimes(size_t i) const;
@@ -75,6 +79,7 @@ private:
     const CutMesh& cut_;
     const Mesh& shown_;  // what is left of it
     const Job& job_;
+    SkyLightPtr sky_;
     std::vector<TexturedSlot> slots_;
     std::vector<uint16_t> slot_at_;  // place in slots_, by slot of the mesh
     std::unordered_map<std::string, size_t> known_;

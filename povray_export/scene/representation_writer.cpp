@@ -33,7 +33,10 @@ std::string solid_text(const Model& model, const Representation& representation,
                      model.materials.size());
             material = model.materials[index];
         }
-        out += '\n' + texture_text(material, TexturedSurface{}, pictures);
+        TexturedSurface surface;
+        if (options.sky)
+            surface.sky = share_of_grade(grade_of_share(options.sky->factor));
+        out += '\n' + texture_text(material, surface, pictures);
         const double refraction = refraction_of(material);
         if (refraction > 0) {
             out += " interior{ior ";
@@ -65,12 +68,16 @@ public:
         check(mesh);
         if (!options_.textures)
             return mesh_text(mesh, nullptr, identifier_, job_);
-        const CutMesh cut = cut_masks(model_, representation_, options_, outlines_, job_);
-        const MeshTextures textures(model_, representation_, cut, options_, pictures_, job_);
-        std::string left_out = textures.bumps_left_out() ? kBumpsLeftOut : "";
-        left_out += layers_line(cut.any ? cut.mesh : mesh, cut);
-        return mesh_text(cut.any ? cut.mesh : mesh, &textures, identifier_, job_,
-                         pictures_.file_comments() + left_out + pictures_.declarations());
+        if (options_.sky && options_.sky->shares) {
+            // The triangles are split where the sky's light on them varies.
+            auto split = light::split_for_sky(mesh, *options_.sky->shares);
+            if (!split)
+                fail(Status::Internal, "the sky's light on a mesh is that on another mesh");
+            Representation lit = representation_;
+            lit.payload = std::make_shared<const Mesh>(std::move(*split));
+            return textured_text(lit);
+        }
+        return textured_text(representation_);
     }
 
     std::string operator()(const Solid& solid) const {
@@ -116,6 +123,16 @@ private:
         return out + '\n';
     }
 
+    std::string textured_text(const Representation& representation) const {
+        const Mesh& mesh = representation.mesh();
+        const CutMesh cut = cut_masks(model_, representation, options_, outlines_, job_);
+        const MeshTextures textures(model_, representation, cut, options_, pictures_, job_);
+        std::string left_out = textures.bumps_left_out() ? kBumpsLeftOut : "";
+        left_out += layers_line(cut.any ? cut.mesh : mesh, cut);
+        return mesh_text(cut.any ? cut.mesh : mesh, &textures, identifier_, job_,
+                         pictures_.file_comments() + left_out + pictures_.declarations());
+    }
+
     std::string declare() const { return "#declare " + identifier_ + " = "; }
 
     const Model& model_;
@@ -150,6 +167,8 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
         hasher.value(*options.texel);
     if (options.outline)
         hasher.text("outline").value(*options.outline);
+    if (options.sky)
+        hasher.text("sky").value(options.sky->hash);
     return hasher.result();
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
+#include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/mesh/mask_outlines.h"
 #include "povray_export/texture/picture_writer.h"
 
@@ -22,6 +23,7 @@ struct RepresentationOptions {
     /// The metres, outline_error() in that frame, by which the outline of a mask may be off where
     /// that is more than a texel.
     std::optional<int> outline = {};
+    SkyLightPtr sky = {};  // the sky's light on it; null: all of it
 };
 
 /// The metres of a step of `outline`: two steps are twice as many.

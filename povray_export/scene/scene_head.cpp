@@ -23,7 +23,8 @@ std::string head_text(const SceneHead& head, const Shading& shading, const Writt
     if (!indirect) {
         out +=
             "// A sky of radiance L on all sides lights a surface of albedo a to a L: POV-Ray's "
-            "ambient\n// with ambient_light = L. (Not shadowed: no occlusion of the sky.)\n";
+            "ambient\n// with ambient_light = L. The share that it sees of the sky is in its "
+            "ambient.\n";
     }
     out += "global_settings{assumed_gamma 1 max_trace_level ";
     // Two surfaces of a glass are two levels.

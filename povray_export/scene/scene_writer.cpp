@@ -8,6 +8,7 @@
 #include "povray_export/lamp/light_writer.h"
 #include "povray_export/lamp/renderer_surfaces.h"
 #include "povray_export/lamp/scene_lights.h"
+#include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/scene/camera_writer.h"
 #include "povray_export/scene/clear_surfaces.h"
 #include "povray_export/scene/include_files.h"
@@ -24,6 +25,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <set>
 #include <span>
@@ -84,6 +86,12 @@ std::optional<glm::dvec3> without_glow(const Model& model, const Representation&
     return color / count;
 }
 
+double process_cpu_s() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 class SceneWriter {
 public:
     SceneWriter(const Model& model, const choose::Cut& cut, const View& view,
@@ -105,10 +113,11 @@ public:
             fail(Status::InvalidArgument, options_.colors.size(), " colors for ",
                  cut_.chosen.size(), " chosen occurrences");
         make_folders();
-        collect();
-        const double before_files = thread_cpu_s();
         if (!options_.covered_only)
             sky_ = write_sky(view_world(), sky_sampling(), options_.folder, problems_);
+        find_sky_light();
+        collect();
+        const double before_files = thread_cpu_s();
         includes_.write(job_);
         hide_replaced();
         const double after_files = thread_cpu_s();
@@ -122,6 +131,7 @@ public:
         write_text("scene.ini",
                    render_settings(view_, shading_, options_.antialiasing, transparent()));
         ExportReport report = report_;
+        std::set<Hash> shown;
         for (size_t i = 0; i < includes_.size(); ++i) {
             const IncludeFile& include = includes_.at(i);
             if (!includes_.is_own(i))
@@ -132,6 +142,8 @@ public:
             report.bytes += include.bytes;
             ++report.files;
             ++report.representations;
+            if (include.options.sky && !shown.insert(include.representation->summary.hash).second)
+                ++report.sky_copies;
             report.written += include.written ? 1u : 0u;
         }
         const PictureFolder::PictureTotals pictures = includes_.pictures();
@@ -164,11 +176,30 @@ private:
         return lit() ? options_.rays : std::span<const choose::RayCut>{};
     }
 
+    /// Gathered light shadows the sky by itself; POV-Ray ignores ambient then.
+    void find_sky_light() {
+        if (!lit() || shading_.bounces > 0 || shading_.sky_rays <= 0 ||
+            sky_.ambient == glm::dvec3(0.0))
+            return;
+        // Taste: a name that says what it is to who finds it.
+        constexpr const char* kFile = "sky_light.bin";
+        SkyOcclusionOptions wanted;
+        wanted.rays = shading_.sky_rays;
+        wanted.file = (options_.bakes.empty() ? options_.folder : options_.bakes) / kFile;
+        wanted.load_finest = options_.load_finest;
+        const double thread_start = thread_cpu_s();
+        const double process_start = process_cpu_s();
+        sky_light_.emplace(model_, cut_, wanted, problems_, job_);
+        // Other threads helped; this one is counted with all it does.
+        report_.cpu_s += process_cpu_s() - process_start - (thread_cpu_s() - thread_start);
+    }
+
     void collect_own() {
         const bool softened =
             shading_.area_samples > 1 && shading_.shadow_error <= view_.pixel_error;
         for (const OwnUse& own : own_uses(model_, cut_, rays(), softened))
-            add_use({own.node, own.lod, 0, 0, own.world, own.hidden, own.in_place}, own.textures);
+            add_use({own.node, own.lod, 0, 0, own.world, own.hidden, own.in_place}, own.textures,
+                    sky_light_ ? sky_light_->mean_of_node(own.node) : nullptr);
     }
 
     /// Hides representations from classes that meet something else in their place, which must be
@@ -193,7 +224,7 @@ private:
     }
 
     /// Adds a use of a representation of its node, in its file.
-    void add_use(OccurrenceUse use, bool textures) {
+    void add_use(OccurrenceUse use, bool textures, const SkyLightPtr& sky) {
         const choose::CutNode& node = cut_.nodes[use.node];
         const Representation& representation =
             model_.objects.at(node.object).representations.at(use.lod);
@@ -204,8 +235,10 @@ private:
             return;
         }
         const double pixel = pixel_of(node, representation, use.world);
-        use.file = includes_.add(representation, {textures, options_.uvs, std::nullopt},
-                                 std::max(view_.pixel_error, kUnseen) * pixel);
+        use.file = includes_.add(
+            representation,
+            {textures, options_.uvs, std::nullopt, std::nullopt, textures ? sky : nullptr},
+            std::max(view_.pixel_error, kUnseen) * pixel);
         uses_.push_back(use);
         if (includes_.at(use.file).pictured)
             includes_.note_texel(use.file, shading_.texture_error * pixel);
@@ -229,7 +262,7 @@ private:
             if (nobody[index] != 0)
                 continue;
             add_use({index, node.lod, position, 0, cut_.world(node), node.hidden},
-                    !options_.false_color);
+                    !options_.false_color, sky_light_ ? sky_light_->of(position) : nullptr);
             // Gathering rays would otherwise look through a lamp, at what it lights behind itself.
             const std::optional<glm::dvec3> dull =
                 shading_.bounces > 0 ? without_glow(model_, representation, node.hidden)
@@ -237,7 +270,7 @@ private:
             if (dull)
                 add_use({index, node.lod, position, 0, cut_.world(node),
                          kAllRays & static_cast<RayMask>(~kRadiosityRays), kRadiosityRays, dull},
-                        false);
+                        false, nullptr);
         }
         collect_own();
         includes_.name(job_);
@@ -483,6 +516,7 @@ private:
     std::vector<OccurrenceUse> uses_;
     ExportReport report_;
     WrittenSky sky_;
+    std::optional<SkyOcclusion> sky_light_;
 };
 
 }  // namespace

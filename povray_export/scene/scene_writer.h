@@ -8,6 +8,7 @@
 #include "povray_export/scene/shading.h"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -32,6 +33,10 @@ struct ExportOptions {
     /// The representations that classes of rays meet in place of parts of the cut, by its nodes;
     /// not in false colors, nor where only covered pixels count.
     std::span<const choose::RayCut> rays{};
+    /// The folder that keeps what was found of the sky's light; empty: `folder`.
+    std::filesystem::path bakes{};
+    /// Makes the finest level of everything resident, where the sky's light must be found.
+    std::function<void()> load_finest{};
     /// Texture coordinates are written where a texture uses them; false: textures are their means.
     bool uvs = true;
 };
@@ -45,8 +50,9 @@ struct ExportReport {
     uint64_t occurrences = 0;  // objects in the scene
     uint64_t unseen = 0;       // objects that the camera does not see, but some other rays
     uint64_t lamps = 0;        // lights but suns
-    double lights_each = 0;  // lamps, and lights for several, that light a seen point, in the mean
-    double cpu_s = 0;        // sum over all threads
+    double lights_each = 0;   // lamps, and lights for several, that light a seen point, in the mean
+    uint64_t sky_copies = 0;  // representations more, for copies under other parts of the sky
+    double cpu_s = 0;         // sum over all threads
 };
 
 /// Writes scene.pov, scene.ini, r/<16 hex>.inc, one for every distinct representation, and the

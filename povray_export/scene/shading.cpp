@@ -7,7 +7,7 @@
 namespace lodestone::povray {
 namespace {
 
-// The next six are limits of the controls.
+// The next seven are limits of the controls.
 //
 // Samples of a pixel, as the square root of their number.
 // Law: POV-Ray's Antialias_Depth ends there.
@@ -21,6 +21,9 @@ constexpr int kMostAreaSamples = 129;
 /// Lights of an environment image.
 /// Taste: more is beyond what anybody waits for.
 constexpr int kMostSkyLights = 1024;
+/// Rays by which a corner finds its share of the sky.
+/// Taste: more change nothing that shows.
+constexpr int kMostSkyRays = 1024;
 /// Bounces of light.
 /// Taste: more adds light that nobody sees.
 constexpr int kMostHandings = 8;
@@ -89,6 +92,9 @@ Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixe
     out.sky_lights = shading.sky_lights == 0 ? sky_lights_of(antialiasing)
                                              : std::clamp(shading.sky_lights, 0, kMostSkyLights);
     out.texture_error = std::max(shading.texture_error, sample_spacing(antialiasing, out.depth));
+    const int usual_rays = antialiasing == Antialiasing::Off ? 0 : 128;
+    out.sky_rays =
+        shading.sky_rays == 0 ? usual_rays : std::clamp(shading.sky_rays, 0, kMostSkyRays);
     out.shadow_error = shading.shadow_error > 0 ? shading.shadow_error : pixel_error;
     const GatheringQuality gathering = gathering_of(antialiasing);
     out.bounces = std::clamp(shading.bounces, 0, kMostHandings);

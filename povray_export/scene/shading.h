@@ -9,12 +9,13 @@ namespace lodestone::povray {
 /// The designer's controls below Pixel Error (Figure 2.20), each with its value. A count or
 /// threshold of 0 is the one its setting of antialiasing stands for.
 struct Shading {
-    double threshold = 0;         // Final: neighbors that differ by more (0 ... 1) get more samples
-    int depth = 0;                // Final: its square is how many
-    int trace_depth = 0;          // mirrors or bodies of glass, one behind the other
-    int area_samples = 0;         // rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows
-    int sky_lights = 0;           // lights that stand for an environment image; below 0: none
-    double shadow_error = 0;      // pixels; narrower penumbrae are sharp. 0: the Pixel Error
+    double threshold = 0;     // Final: neighbors that differ by more (0 ... 1) get more samples
+    int depth = 0;            // Final: its square is how many
+    int trace_depth = 0;      // mirrors or bodies of glass, one behind the other
+    int area_samples = 0;     // rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows
+    int sky_lights = 0;       // lights that stand for an environment image; below 0: none
+    int sky_rays = 0;         // rays by which corners find their share of the sky; below 0: none
+    double shadow_error = 0;  // pixels; narrower penumbrae are sharp. 0: the Pixel Error
     double reflection_error = 0;  // 255ths; rays that add less are not followed. 0: 1
     double texture_error = 0;     // pixels; what a picture may be blurred by. 0: what samples miss
     int bounces = 0;              // bounces of light from surface to surface; 0: direct light only

@@ -293,11 +293,12 @@ private:
         const double painted = image ? std::max({paint.x, paint.y, paint.z}) : 1;
         const double brightness = scale * painted;
         out.finish = finish_of(look);
-        out.finish.ambient *= brightness;
+        const double sky = share(surface_.sky, 1);
+        out.finish.ambient *= brightness * sky;
         out.finish.diffuse *= brightness;
         out.finish.specular *= std::lerp(1.0, brightness, out.finish.metallic);
         // The part that has not the color of the pigment, and is the same all over.
-        out.white = glm::dvec3(white_sky(look));
+        out.white = glm::dvec3(white_sky(look) * sky);
         out.even = out.lamp ? glm::dvec3(0.0) : emission;
         out.plain = image && (out.white != glm::dvec3(0.0) || out.even != glm::dvec3(0.0));
         out.pigment = "pigment{";

@@ -17,6 +17,7 @@ struct TexturedSurface {
     bool uvs = false;  // without texture coordinates every texture is its mean
     UvRange range;
     glm::dvec4 color{1.0};  // color of its vertices, linear; counts where the material uses it
+    double sky = 1;         // share of a uniform sky's light that reaches it
     bool flat = false;      // true: in one plane with to_uv; only there bumps are shown
     Affine to_uv;           // position to (u, v, height above the plane), where flat
 };

@@ -1134,6 +1134,11 @@ typedef struct lds_povray_options {
     int32_t bounce_rays;     /* rays that gather indirect light; usual 200, OFF 60, REFERENCE 800 */
     double bounce_error;     /* 0...1: how far gathered light is interpolated; usual 0.6, with OFF
                                 1, with REFERENCE 0.4 */
+    int32_t sky_rays; /* rays by which each corner of a mesh finds how much of the sky's uniform
+                                light reaches it, up to 1024; below 0: all of it reaches everything;
+                                usual 128, with OFF none. Nothing with bounces, which do it */
+    const char* bake_folder; /* a folder that keeps what such rays found, for the next
+                                picture: that of the store; null: the scene's own folder */
 } lds_povray_options;
 LDS_API lds_status lds_povray_options_default(lds_povray_options* options);
 
@@ -1147,6 +1152,8 @@ typedef struct lds_export_report {
     double lights_each; /* lights, of one lamp or standing for several, per point of the picture, on
                            average */
     uint64_t unseen;    /* occurrences that the camera does not see, but some class of rays meets */
+    uint64_t sky_copies; /* representations written once more, for copies that see another share of
+                            the sky */
 } lds_export_report;
 /* Writes scene.pov, scene.ini and r/<16 hex>.inc into folder, with the model's lights and world. */
 LDS_API lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,

@@ -28,6 +28,7 @@ _SHADING = (
     "bounces",
     "bounce_rays",
     "bounce_error",
+    "sky_rays",
 )
 
 
@@ -52,6 +53,8 @@ class PovrayOptions:
     bounces: int = 0
     bounce_rays: int = 0
     bounce_error: float = 0.0
+    sky_rays: int = 0
+    bake_folder: str | None = None  # keeps what sky_rays found; None: the scene's folder
 
     def struct(self) -> structs.PovrayOptions:
         out = structs.PovrayOptions()
@@ -61,6 +64,7 @@ class PovrayOptions:
         out.covered_only = int(self.covered_only)
         out.threads = self.threads
         out.program = text_in(self.program or None)
+        out.bake_folder = text_in(self.bake_folder)
         for name in _SHADING:
             setattr(out, name, getattr(self, name))
         return out

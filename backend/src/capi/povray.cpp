@@ -43,6 +43,7 @@ povray::Shading shading_of(const lds_povray_options& options) {
     out.bounces = options.bounces;
     out.bounce_rays = options.bounce_rays;
     out.bounce_error = error_of(options.bounce_error, "bounce_error");
+    out.sky_rays = options.sky_rays;
     return out;
 }
 
@@ -83,6 +84,14 @@ void run(const povray::RunOptions& options, lds_job* job, lds_povray_report* out
     out.wall_s = report.wall_s;
     out.peak_bytes = report.peak_bytes;
     hand_out(out_report, out, "out_report");
+}
+
+/// Makes the finest level of everything resident.
+void load_finest(lds_model& model) {
+    for (const ObjectIndex index : bottom_up(model.model)) {
+        if (!model.model.objects[index].representations.empty())
+            model.load(model.model.objects[index].representations[0]);
+    }
 }
 
 }  // namespace
@@ -126,6 +135,9 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         if (std::isnan(given.light_error))
             fail(Status::InvalidArgument, "options.light_error is not a number");
         wanted.rays = cut->rays;
+        if (given.bake_folder != nullptr)
+            wanted.bakes = given.bake_folder;
+        wanted.load_finest = [model] { load_finest(*model); };
         if (given.light_error >= 0)
             wanted.light_error = given.light_error;
         const povray::ExportReport report = povray::export_scene(
@@ -138,6 +150,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.lamps = report.lamps;
         out.lights_each = report.lights_each;
         out.unseen = report.unseen;
+        out.sky_copies = report.sky_copies;
         hand_out(out_report, out, "out_report");
     });
 }

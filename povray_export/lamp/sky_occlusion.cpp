@@ -1,0 +1,544 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/lamp/sky_occlusion.h"
+
+#include "base/parallel.h"
+#include "light/sky_bakes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <unordered_map>
+
+namespace lodestone::povray {
+namespace {
+
+// The version of what is kept: raised whenever rays or splits are chosen in another way.
+// Law: part of every key.
+constexpr uint32_t kBakeVersion = 1;
+// The grades of what is around the placements of one thing.
+// Taste: a larger value shades copies more truly, for a copy of the mesh each.
+constexpr int kPlacementGrades = 4;
+// The triangles of copies, beyond kPlacementGrades of a mesh, that have shares of their own: a share
+// of those of all distinct meshes, and some more.
+// Taste: a larger value shades small things more truly, for a copy of the mesh each.
+constexpr double kCopiedShare = 0.25;
+constexpr double kCopiedTriangles = 5000;  // Taste: as kCopiedShare
+// The triangles that splits may add: a share of those of all distinct meshes, and some more.
+// Taste: a larger value draws sharper shade on large faces, for memory and parsing of each.
+constexpr double kSplitShare = 0.25;
+constexpr double kSplitTriangles = 2000;  // Taste: as kSplitShare
+// The step of square roots of shares below which placements share a grade.
+// Taste: a larger value saves copies of meshes.
+constexpr double kGradeStep = 0.1;
+// Rays that tell what is around one placement, where placements are few.
+// Taste: more are truer and take longer.
+constexpr int kMeanRays = 128;
+constexpr int kFewestMeanRays = 16;          // Taste: as kMeanRays
+constexpr double kMostMeanRays = 1'000'000;  // Taste: rays of all placements together
+// A scene of more is not looked through.
+// Taste: it would take minutes and gigabytes.
+constexpr uint64_t kMostTriangles = 6'000'000;
+constexpr size_t kMostLeaves = 2'000'000;  // Taste: as kMostTriangles
+// The steps of a factor.
+// Taste: fine enough to keep means, coarse enough that rounding does not make other files.
+constexpr double kFactorSteps = 256;
+
+/// A placement of something that is not a group.
+struct SkyLeaf {
+    ObjectIndex object = kNoObject;
+    Affine world;
+    bool hides = false;  // rests, and is met by shadow rays
+};
+
+/// A choice of the cut.
+struct SkyThing {
+    const Representation* representation = nullptr;
+    Affine world;
+    uint32_t first = 0;  // of the leaves that are it or below it
+    bool moves = false;
+    bool group = false;  // stands in for a group
+};
+
+/// A finest level, and how often it is placed.
+struct PlacedMesh {
+    uint64_t count = 0;
+    uint64_t triangles = 0;
+    bool copied = false;  // true: each copy has shares of its own
+};
+
+void hash_transform(Hasher& hasher, const Affine& world) {
+    double rows[12];
+    world.to_rows(rows);
+    for (const double value : rows)
+        hasher.value(value);
+}
+
+/// The means of a list of placements, as bytes and back.
+std::string bytes_of(const std::vector<light::SkyMeans>& means) {
+    std::string out(means.size() * 2 * sizeof(float), '\0');
+    for (size_t i = 0; i < means.size(); ++i) {
+        const float pair[] = {static_cast<float>(means[i].placed),
+                              static_cast<float>(means[i].alone)};
+        std::memcpy(out.data() + i * sizeof pair, pair, sizeof pair);
+    }
+    return out;
+}
+std::optional<std::vector<light::SkyMeans>> means_of(std::string_view bytes, size_t count) {
+    float pair[2];
+    if (bytes.size() != count * sizeof pair)
+        return {};
+    std::vector<light::SkyMeans> out(count);
+    for (size_t i = 0; i < count; ++i) {
+        std::memcpy(pair, bytes.data() + i * sizeof pair, sizeof pair);
+        out[i] = {limited(pair[0], 0, 1), limited(pair[1], 0, 1)};
+    }
+    return out;
+}
+
+/// At most kPlacementGrades numbers in place of all: the means of those that are about as large.
+std::vector<double> graded(const std::vector<double>& shares) {
+    double low = 1;
+    double high = 0;
+    for (const double share : shares) {
+        low = std::min(low, std::sqrt(share));
+        high = std::max(high, std::sqrt(share));
+    }
+    const int count =
+        std::clamp(static_cast<int>(std::ceil((high - low) / kGradeStep)), 1, kPlacementGrades);
+    const auto grade_of = [&](double share) {
+        const double place = high > low ? (std::sqrt(share) - low) / (high - low) : 0;
+        return static_cast<size_t>(std::clamp(static_cast<int>(place * count), 0, count - 1));
+    };
+    std::vector<double> sums(static_cast<size_t>(count), 0);
+    std::vector<double> members(static_cast<size_t>(count), 0);
+    for (const double share : shares) {
+        sums[grade_of(share)] += share;
+        members[grade_of(share)] += 1;
+    }
+    std::vector<double> out;
+    out.reserve(shares.size());
+    for (const double share : shares)
+        out.push_back(sums[grade_of(share)] / members[grade_of(share)]);
+    return out;
+}
+
+double stepped(double factor) {
+    return std::round(limited(factor, 0, 1) * kFactorSteps) / kFactorSteps;
+}
+
+class SkyPlanner {
+public:
+    SkyPlanner(const Model& model, const choose::Cut& cut, const SkyOcclusionOptions& options,
+               const Job& job)
+        : model_(model), cut_(cut), options_(options), job_(job), bakes_(options.file) {}
+
+    /// The reason why there is none; "" when lights() are found.
+    std::string run() {
+        if (!collect())
+            return "There is too much in the scene to find what hides the sky";
+        find_keys();
+        std::string reason;
+        if (!missing_.empty() || !missing_means_.empty()) {
+            if (!ray::available(&reason))
+                return "What hides the sky is not found: " + reason;
+            bake();
+            bakes_.save();
+        }
+        light_all();
+        return "";
+    }
+
+    std::vector<SkyLightPtr> lights() { return std::move(lights_); }
+    SkyLightPtr mean_of(size_t position) const {
+        return position < means_.size() ? factor_light(means_[position]) : nullptr;
+    }
+
+private:
+    /// A request for shares: of one surface alone, or of one thing as it is placed.
+    struct WantedShares {
+        const Representation* representation = nullptr;
+        const SkyThing* placed = nullptr;  // null: alone
+        std::shared_ptr<const light::SkyShares> found;
+    };
+    /// A request for the means of all placements of one finest level, or of one stand-in.
+    struct WantedMeans {
+        const Representation* representation = nullptr;
+        std::vector<Affine> places;
+        std::vector<light::SkyMeans> found;
+        std::vector<double> ratios;  // graded
+        Hash key = 0;
+    };
+
+    bool walk(ObjectIndex object, const Affine& world, RayMask hidden, bool moves) {
+        if (object >= model_.objects.size() || leaves_.size() >= kMostLeaves)
+            return false;
+        const Object& here = model_.objects[object];
+        moves = moves || here.deforms;
+        if (here.representations.empty())
+            return true;
+        const Representation& finest = here.representations[0];
+        if (finest.summary.kind != Kind::Assembly) {
+            leaves_.push_back({object, world, !moves && (hidden & kShadowRays) == 0});
+            return true;
+        }
+        if (!finest.resident())
+            return true;
+        for (const Placement& placement : finest.assembly().placements) {
+            if (!walk(placement.object, world * placement.transform,
+                      static_cast<RayMask>(hidden | placement.hidden), moves))
+                return false;
+        }
+        return true;
+    }
+
+    bool collect() {
+        // Whether a node is below something that moves, for parents come before children.
+        std::vector<uint8_t> moves(cut_.nodes.size(), 0);
+        for (size_t i = 0; i < cut_.nodes.size(); ++i) {
+            const choose::CutNode& node = cut_.nodes[i];
+            const bool above = node.parent != choose::kNoParent && moves[node.parent] != 0;
+            moves[i] = above || model_.objects.at(node.object).deforms ? 1 : 0;
+        }
+        for (const uint32_t index : cut_.chosen) {
+            if ((things_.size() & 1023u) == 0)
+                job_.check();
+            const choose::CutNode& node = cut_.nodes.at(index);
+            const Object& object = model_.objects.at(node.object);
+            SkyThing thing;
+            thing.representation = &object.representations.at(node.lod);
+            thing.world = cut_.world(node);
+            thing.moves = moves[index] != 0;
+            thing.group = object.group();
+            thing.first = static_cast<uint32_t>(leaves_.size());
+            if (!walk(node.object, thing.world, node.hidden, thing.moves))
+                return false;
+            things_.push_back(thing);
+        }
+        uint64_t triangles = 0;
+        Hasher scene;
+        scene.value(kBakeVersion).value(options_.rays);
+        for (const SkyLeaf& leaf : leaves_) {
+            const RepresentationSummary& summary = finest_of(leaf).summary;
+            PlacedMesh& mesh = placed_[summary.hash];
+            mesh.triangles = summary.cost.triangles;
+            if (mesh.count++ == 0)
+                triangles += mesh.triangles;
+            if (!leaf.hides)
+                continue;
+            ++hiding_;
+            scene.value(summary.hash);
+            hash_transform(scene, leaf.world);
+            sizes_ += transformed(summary.bound, leaf.world).radius;
+        }
+        scene_hash_ = scene.result();
+        triangles_ = triangles;
+        choose_copied();
+        return triangles <= kMostTriangles;
+    }
+
+    const Representation& finest_of(const SkyLeaf& leaf) const {
+        return model_.objects[leaf.object].representations[0];
+    }
+
+    bool skipped(const SkyThing& thing) const {
+        return thing.representation->summary.kind == Kind::Assembly || !thing.world.finite();
+    }
+    /// Finds the meshes whose copies all have shares of their own: those of few placements, and
+    /// of the others the smallest.
+    void choose_copied() {
+        std::vector<std::pair<uint64_t, Hash>> order;  // with the triangles of all copies
+        for (const auto& [hash, mesh] : placed_) {
+            if (mesh.count > kPlacementGrades)
+                order.emplace_back(mesh.count * mesh.triangles, hash);
+        }
+        std::sort(order.begin(), order.end());
+        double rest = kCopiedTriangles + kCopiedShare * static_cast<double>(triangles_);
+        for (const auto& [triangles, hash] : order) {
+            rest -= static_cast<double>(triangles);
+            if (rest < 0)
+                break;
+            placed_[hash].copied = true;
+        }
+    }
+
+    /// Whether a thing's shares are found where it stands.
+    bool in_place(const SkyThing& thing) const {
+        if (thing.moves || thing.representation->summary.kind != Kind::Mesh)
+            return false;
+        if (thing.group)
+            return stand_ins_.at(thing.representation->summary.hash) == 1;
+        const PlacedMesh& mesh = placed_.at(finest_of(leaves_[thing.first]).summary.hash);
+        return mesh.count <= kPlacementGrades || mesh.copied;
+    }
+
+    /// The triangles that splits may add to something where it stands: large things have more of
+    /// them, whatever the cut draws.
+    size_t splits_of(const SkyThing& thing) const {
+        if (!thing.group && placed_.at(finest_of(leaves_[thing.first]).summary.hash).count > 1)
+            return 0;
+        const double size = transformed(thing.representation->summary.bound, thing.world).radius;
+        const double all = kSplitTriangles + kSplitShare * static_cast<double>(triangles_);
+        return sizes_ > 0 ? static_cast<size_t>(limited(size / sizes_, 0, 1) * all) : 0;
+    }
+
+    Hash key_of(const Representation& representation, const SkyThing* placed) const {
+        Hasher hasher;
+        hasher.value(kBakeVersion).value(options_.rays).value(representation.summary.hash);
+        if (placed != nullptr) {
+            hasher.value(scene_hash_);
+            hash_transform(hasher, placed->world);
+        }
+        return hasher.result();
+    }
+
+    /// Finds what was kept, and lists what was not.
+    void find_keys() {
+        for (const SkyThing& thing : things_) {
+            if (thing.group)
+                ++stand_ins_[thing.representation->summary.hash];
+        }
+        shares_of_.resize(things_.size(), nullptr);
+        means_of_.resize(things_.size(), {nullptr, 0});
+        for (size_t i = 0; i < things_.size(); ++i) {
+            const SkyThing& thing = things_[i];
+            if (skipped(thing))
+                continue;
+            const bool once = in_place(thing);
+            if (thing.representation->summary.kind == Kind::Mesh)
+                shares_of_[i] = want_shares(thing, once);
+            if (!once && !thing.moves)
+                want_means(i);
+        }
+        for (uint32_t i = 0; i < numbers_.size(); ++i) {
+            const auto wanted = wanted_means_.find({finest_of(leaves_[i]).summary.hash, false});
+            if (wanted != wanted_means_.end())
+                wanted->second.places[numbers_[i]] = leaves_[i].world;
+        }
+        for (auto& [key, wanted] : wanted_means_)
+            find_means(key.first, wanted);
+    }
+
+    WantedShares* want_shares(const SkyThing& thing, bool once) {
+        const Hash key = key_of(*thing.representation, once ? &thing : nullptr);
+        const auto [at, fresh] = wanted_shares_.try_emplace(key);
+        WantedShares& wanted = at->second;
+        if (!fresh)
+            return &wanted;
+        wanted.representation = thing.representation;
+        wanted.placed = once ? &thing : nullptr;
+        if (const auto bytes = bakes_.find(key)) {
+            auto found =
+                light::SkyShares::of_bytes(*bytes, thing.representation->summary.cost.triangles);
+            if (found)
+                wanted.found = std::make_shared<const light::SkyShares>(std::move(*found));
+        }
+        if (!wanted.found)
+            missing_.emplace_back(key, &wanted);
+        return &wanted;
+    }
+
+    /// The means are those of all placements of the finest level, so that grades do not depend on
+    /// which of them the cut draws; those of a stand-in are of the cut's.
+    void want_means(size_t i) {
+        const SkyThing& thing = things_[i];
+        const Representation& representation =
+            thing.group ? *thing.representation : finest_of(leaves_[thing.first]);
+        WantedMeans& wanted = wanted_means_[{representation.summary.hash, thing.group}];
+        wanted.representation = &representation;
+        if (thing.group) {
+            means_of_[i] = {&wanted, wanted.places.size()};
+            wanted.places.push_back(thing.world);
+        } else {
+            means_of_[i] = {&wanted, number_of_leaf(representation.summary.hash, thing.first)};
+        }
+    }
+
+    /// The number of a leaf among those of its finest level.
+    size_t number_of_leaf(Hash hash, uint32_t leaf) {
+        if (numbers_.empty()) {
+            numbers_.resize(leaves_.size());
+            std::unordered_map<Hash, uint32_t> counts;
+            for (size_t i = 0; i < leaves_.size(); ++i)
+                numbers_[i] = counts[finest_of(leaves_[i]).summary.hash]++;
+        }
+        wanted_means_[{hash, false}].places.resize(placed_.at(hash).count);
+        return numbers_[leaf];
+    }
+
+    void find_means(Hash hash, WantedMeans& wanted) {
+        Hasher hasher;
+        hasher.value(scene_hash_).value(hash).value(wanted.places.size());
+        for (const Affine& world : wanted.places)
+            hash_transform(hasher, world);
+        wanted.key = hasher.result();
+        const auto bytes = bakes_.find(wanted.key);
+        auto found = bytes ? means_of(*bytes, wanted.places.size()) : std::nullopt;
+        if (found)
+            wanted.found = std::move(*found);
+        else
+            missing_means_.push_back(&wanted);
+    }
+
+    void bake() {
+        if (options_.load_finest)
+            options_.load_finest();
+        std::vector<light::SkyOccluder> occluders;
+        occluders.reserve(hiding_);
+        std::vector<const Representation*> all;
+        for (const SkyLeaf& leaf : leaves_) {
+            if (!leaf.hides)
+                continue;
+            occluders.push_back({&finest_of(leaf), leaf.world});
+            all.push_back(&finest_of(leaf));
+        }
+        for (const auto& [key, wanted] : missing_)
+            all.push_back(wanted->representation);
+        for (const WantedMeans* wanted : missing_means_)
+            all.push_back(wanted->representation);
+        light::SkySurfaces surfaces(model_);
+        surfaces.add(all, job_);
+        const light::SkyScene scene(model_, surfaces, occluders, job_);
+        parallel_for(missing_.size(), [&](size_t i) {
+            WantedShares& wanted = *missing_[i].second;
+            light::SkyRequest request{
+                surfaces.of(*wanted.representation), {}, nullptr, 0, options_.rays, 0};
+            if (wanted.placed != nullptr) {
+                request.world = wanted.placed->world;
+                request.around = &scene;
+                request.error = wanted.representation->summary.max_error;
+                request.splits = splits_of(*wanted.placed);
+            }
+            wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
+        });
+        size_t places = 0;
+        for (const WantedMeans* wanted : missing_means_)
+            places += wanted->places.size();
+        const int rays =
+            std::clamp(static_cast<int>(kMostMeanRays / static_cast<double>(places + 1)),
+                       kFewestMeanRays, kMeanRays);
+        for (WantedMeans* wanted : missing_means_) {
+            wanted->found.resize(wanted->places.size());
+            const light::SkySurface& surface = surfaces.of(*wanted->representation);
+            parallel_for(wanted->places.size(), [&](size_t i) {
+                job_.check();
+                const light::SkyRequest request{surface, wanted->places[i], &scene,
+                                                wanted->representation->summary.max_error, rays};
+                wanted->found[i] = mean_sky_shares(request, rays);
+            });
+        }
+        for (const auto& [key, wanted] : missing_)
+            bakes_.add(key, wanted->found->bytes());
+        for (const WantedMeans* wanted : missing_means_)
+            bakes_.add(wanted->key, bytes_of(wanted->found));
+    }
+
+    static SkyLightPtr factor_light(double factor) {
+        auto light = std::make_shared<SkyLight>();
+        light->factor = stepped(factor);
+        light->hash = Hasher().value(light->factor).result();
+        return light;
+    }
+
+    void light_all() {
+        for (auto& [hash, wanted] : wanted_means_) {
+            for (const light::SkyMeans& mean : wanted.found)
+                wanted.ratios.push_back(mean.alone > 0 ? mean.placed / mean.alone : 1);
+            wanted.ratios = graded(wanted.ratios);
+        }
+        lights_.resize(things_.size());
+        means_.resize(things_.size(), 1);
+        for (size_t i = 0; i < things_.size(); ++i) {
+            const auto& [means, number] = means_of_[i];
+            if (means != nullptr)
+                means_[i] = means->found[number].placed;
+            if (shares_of_[i] == nullptr) {
+                if (means != nullptr)
+                    lights_[i] = factor_light(share_of_grade(grade_of_share(means_[i])));
+                continue;
+            }
+            auto light = std::make_shared<SkyLight>();
+            light->shares = shares_of_[i]->found;
+            light->factor = means != nullptr ? stepped(means->ratios[number]) : 1;
+            const Hash key = key_of(*shares_of_[i]->representation, shares_of_[i]->placed);
+            light->hash = Hasher().value(key).value(light->factor).result();
+            if (means == nullptr)
+                means_[i] = light->shares->mean;
+            lights_[i] = std::move(light);
+        }
+    }
+
+    const Model& model_;
+    const choose::Cut& cut_;
+    const SkyOcclusionOptions& options_;
+    const Job& job_;
+    light::SkyBakes bakes_;
+    std::vector<SkyLeaf> leaves_;
+    std::vector<SkyThing> things_;                  // by position in cut.chosen
+    std::unordered_map<Hash, PlacedMesh> placed_;   // leaves by finest level
+    std::unordered_map<Hash, uint32_t> stand_ins_;  // things by stand-in
+    uint32_t hiding_ = 0;
+    uint64_t triangles_ = 0;  // of all distinct finest levels
+    double sizes_ = 0;        // radii of all that hides the sky
+    Hash scene_hash_ = 0;
+    std::vector<uint32_t> numbers_;  // by leaf
+    std::map<Hash, WantedShares> wanted_shares_;
+    std::map<std::pair<Hash, bool>, WantedMeans> wanted_means_;  // with: a stand-in
+    std::vector<std::pair<Hash, WantedShares*>> missing_;
+    std::vector<WantedMeans*> missing_means_;
+    std::vector<WantedShares*> shares_of_;                   // by thing
+    std::vector<std::pair<WantedMeans*, size_t>> means_of_;  // by thing
+    std::vector<SkyLightPtr> lights_;
+    std::vector<double> means_;
+};
+
+}  // namespace
+
+double share_of_grade(uint8_t grade) {
+    const double root = static_cast<double>(grade) / (kSkyGrades - 1);
+    return root * root;
+}
+
+uint8_t grade_of_share(double share) {
+    return static_cast<uint8_t>(std::lround((kSkyGrades - 1) * std::sqrt(limited(share, 0, 1))));
+}
+
+uint8_t SkyLight::grade(size_t triangle, int corner) const {
+    if (!shares)
+        return grade_of_share(factor);
+    const uint8_t byte = shares->corners.at(3 * triangle + static_cast<size_t>(corner));
+    return grade_of_share(factor * light::share_of_byte(byte));
+}
+
+SkyOcclusion::SkyOcclusion(const Model& model, const choose::Cut& cut,
+                           const SkyOcclusionOptions& options, Problems& problems, const Job& job)
+    : lights_(cut.chosen.size()) {
+    SkyPlanner planner(model, cut, options, job);
+    std::string reason;
+    try {
+        reason = planner.run();
+    } catch (const Error& error) {
+        if (error.status == Status::Cancelled)
+            throw;
+        reason = std::string("What hides the sky is not found: ") + error.what();
+    }
+    if (!reason.empty()) {
+        problems.push_back({"", Severity::Info, "sky_not_occluded", reason});
+        return;
+    }
+    lights_ = planner.lights();
+    for (size_t i = 0; i < cut.chosen.size(); ++i) {
+        if (lights_[i])
+            means_.emplace_back(cut.chosen[i], planner.mean_of(i));
+    }
+}
+
+SkyLightPtr SkyOcclusion::mean_of_node(uint32_t node) const {
+    const auto at =
+        std::lower_bound(means_.begin(), means_.end(), node,
+                         [](const auto& mean, uint32_t wanted) { return mean.first < wanted; });
+    return at != means_.end() && at->first == node ? at->second : nullptr;
+}
+
+}  // namespace lodestone::povray

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sky occlusion: how much of the sky's uniform light each drawn thing answers to, found by rays and
+// kept from picture to picture.
+#pragma once
+
+#include "base/job.h"
+#include "choose/cut.h"
+#include "light/sky_visibility.h"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace lodestone::povray {
+
+/// The grades of a mesh's corners.
+/// Taste: a larger value shows finer steps of shade, for a texture of each material and grade.
+inline constexpr int kSkyGrades = 32;
+/// The share of the sky's light that a grade stands for; grade kSkyGrades - 1 is all of it.
+double share_of_grade(uint8_t grade);
+uint8_t grade_of_share(double share);
+
+/// The share of the sky's light that one drawn thing answers to.
+struct SkyLight {
+    std::shared_ptr<const light::SkyShares> shares;  // null: `factor` alone
+    double factor = 1;                               // on all shares: what is around the thing
+    Hash hash = 0;                                   // of both
+
+    /// The grade of a corner of the split mesh.
+    uint8_t grade(size_t triangle, int corner) const;
+};
+using SkyLightPtr = std::shared_ptr<const SkyLight>;
+
+/// The choices for sky occlusion.
+struct SkyOcclusionOptions {
+    int rays = 128;              // that tell the share of a corner
+    std::filesystem::path file;  // where bakes are kept; "": nowhere
+    /// Makes the finest level of everything resident; asked for only where something is to be
+    /// found that was not kept.
+    std::function<void()> load_finest;
+};
+
+/// The sky's light on everything that a cut draws. What hides the sky are the finest levels of all
+/// that rests, whatever the cut draws, so that shade does not change as the camera moves. A thing
+/// that is placed once has the shares of its corners as it stands there. What is placed more often
+/// has those of its own shape, times one of at most four grades of what is around its placement.
+/// What moves in an animation hides the sky from itself alone.
+class SkyOcclusion {
+public:
+    /// Where rays cannot be cast or there is too much, nothing is occluded, and a problem says so.
+    /// Throws Error(Cancelled).
+    SkyOcclusion(const Model& model, const choose::Cut& cut, const SkyOcclusionOptions& options,
+                 Problems& problems, const Job& job);
+
+    /// The light on a choice of the cut; null: all of it.
+    SkyLightPtr of(size_t position) const { return lights_[position]; }
+    /// The same for another level of that node: one factor for all of it.
+    SkyLightPtr mean_of_node(uint32_t node) const;
+
+private:
+    std::vector<SkyLightPtr> lights_;                      // by position in cut.chosen
+    std::vector<std::pair<uint32_t, SkyLightPtr>> means_;  // by node, rising
+};
+
+}  // namespace lodestone::povray

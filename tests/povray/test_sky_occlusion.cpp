@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the shade of the sky in POV-Ray's scenes: it is as dark as it must be, costs no rays, and
+// is found once.
+#include "povray/povray_scenes.h"
+#include "povray_export/lamp/sky_occlusion.h"
+
+#include <set>
+
+using namespace lodestone;
+using namespace lodestone::povray;
+using scenes::Builder;
+
+namespace {
+
+class SkyOcclusionScenes : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string reason;
+        if (!ray::available(&reason))
+            GTEST_SKIP() << reason;
+        builder.model.world.color = glm::dvec3(0.5);
+    }
+
+    ExportReport write(const std::string& folder, const Model& model, int rays = 64) {
+        ExportOptions options;
+        options.folder = own_scratch() / folder;
+        options.shading.sky_rays = rays;
+        Problems problems;
+        const ExportReport report = scenes::write(model, scenes::above(), options, problems);
+        EXPECT_TRUE(problems.empty()) << problems.front().message;
+        return report;
+    }
+
+    /// The texts of all include files that a folder's scene uses.
+    std::string includes(const std::string& folder) const {
+        const std::filesystem::path path = own_scratch() / folder;
+        const std::string scene = read_file(path / "scene.pov");
+        std::string out;
+        const std::string begin = "#include \"";
+        for (size_t at = scene.find(begin); at != std::string::npos;
+             at = scene.find(begin, at + 1)) {
+            const size_t name = at + begin.size();
+            out += read_file(path / scene.substr(name, scene.find('"', name) - name));
+        }
+        return out;
+    }
+
+    Builder builder;
+};
+
+/// The different answers to the sky in a text.
+std::set<std::string> ambients(const std::string& text) {
+    std::set<std::string> found;
+    const std::string begin = "finish{ambient rgb ";
+    for (size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1))
+        found.insert(text.substr(at + begin.size(), text.find('>', at) - at - begin.size()));
+    return found;
+}
+
+Affine at(double x, double y, double z) {
+    return {glm::dmat3(1.0), {x, y, z}};
+}
+
+}  // namespace
+
+TEST_F(SkyOcclusionScenes, GradesAreTheNearestToShares) {
+    EXPECT_EQ(grade_of_share(1), kSkyGrades - 1);
+    EXPECT_EQ(share_of_grade(kSkyGrades - 1), 1);
+    EXPECT_EQ(grade_of_share(0), 0);
+    EXPECT_EQ(grade_of_share(std::nan("")), 0);
+    for (int grade = 0; grade < kSkyGrades; ++grade)
+        EXPECT_EQ(grade_of_share(share_of_grade(static_cast<uint8_t>(grade))), grade);
+}
+
+TEST_F(SkyOcclusionScenes, UnderARoofItIsAsDarkAsTheSkyThatIsSeen) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no povray";
+    // The roof is hidden from the camera, that looks at the floor through it.
+    const ObjectIndex floor = builder.mesh(shapes::quad(1, 1), {builder.matte({.8, .8, .8})});
+    const ObjectIndex wall = builder.mesh(shapes::box({0, -500, -1}, {1, 500, 500}));
+    builder.place(floor, at(-.5, -.5, 0));
+    builder.place(wall, at(.5, 0, 0), "wall", kCameraRays);
+    const Model& model = builder.finish();
+    ExportOptions options;
+    options.folder = own_scratch() / "scene";
+    const scenes::Image half = scenes::render(model, scenes::above(), options);
+    options.folder = own_scratch() / "open";
+    options.shading.sky_rays = -1;
+    const scenes::Image open = scenes::render(model, scenes::above(), options);
+    EXPECT_NEAR(half.at(32, 32).x / open.at(32, 32).x, 0.5, 0.05);
+}
+
+TEST_F(SkyOcclusionScenes, WithoutSkyRaysOrASkyTheTextIsAsBefore) {
+    const ObjectIndex floor = builder.mesh(shapes::quad(4, 4), {builder.matte({.8, .8, .8})});
+    const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({.8, .8, .8})});
+    builder.place(floor, at(-2, -2, 0));
+    builder.place(box, at(0, 0, .2));
+    write("off", builder.finish(), -1);
+    EXPECT_EQ(ambients(includes("off")).size(), 1u);
+    write("on", builder.model);
+    EXPECT_GT(ambients(includes("on")).size(), 3u);
+    builder.model.world.color = glm::dvec3(0.0);
+    write("dark", builder.model);
+    EXPECT_EQ(includes("dark"), includes("off"));
+}
+
+TEST_F(SkyOcclusionScenes, WhatGlowsGlowsAsBefore) {
+    Material glow;
+    glow.emission = {2, 2, 2};
+    const ObjectIndex floor = builder.mesh(shapes::quad(4, 4), {builder.material(glow)});
+    const ObjectIndex box = builder.mesh(shapes::box({-1, -1, .2}, {1, 1, 1}));
+    builder.place(floor, at(-2, -2, 0));
+    builder.place(box);
+    write("on", builder.finish());
+    const std::string text = includes("on");
+    // The pigment of 0.8 multiplies emission.
+    const std::string emission = "emission rgb <2.5,2.5,2.5>";
+    size_t count = 0;
+    for (size_t found = text.find(emission); found != std::string::npos;
+         found = text.find(emission, found + 1))
+        ++count;
+    EXPECT_GT(count, 2u);
+}
+
+TEST_F(SkyOcclusionScenes, TheSecondPictureFindsNothingAgain) {
+    const ObjectIndex floor = builder.mesh(shapes::quad(4, 4));
+    const ObjectIndex box = builder.mesh(shapes::cube());
+    builder.place(floor, at(-2, -2, 0));
+    builder.place(box, at(0, 0, .2));
+    const Model& model = builder.finish();
+    const ExportReport first = write("scene", model);
+    const std::filesystem::path file = own_scratch() / "scene" / "sky_light.bin";
+    ASSERT_TRUE(std::filesystem::exists(file));
+    std::filesystem::last_write_time(file, {});
+    const std::string text = includes("scene");
+    const ExportReport second = write("scene", model);
+    EXPECT_EQ(second.bytes, first.bytes);
+    EXPECT_EQ(second.written, 2u);  // scene.pov and scene.ini
+    EXPECT_EQ(std::filesystem::last_write_time(file), std::filesystem::file_time_type{});
+    EXPECT_EQ(includes("scene"), text);
+}
+
+TEST_F(SkyOcclusionScenes, AMovedHouseMakesOtherShade) {
+    const ObjectIndex floor = builder.mesh(shapes::quad(4, 4));
+    const ObjectIndex box = builder.mesh(shapes::cube());
+    builder.place(floor, at(-2, -2, 0));
+    builder.place(box, at(0, 0, .2));
+    write("scene", builder.finish());
+    const std::string before = includes("scene");
+    Object& root = builder.model.objects[0];
+    Assembly placed = root.representations[0].assembly();
+    placed.placements[1].transform.offset.x = -1;
+    root.representations[0].payload = std::make_shared<const Assembly>(placed);
+    summarize_assemblies(builder.model, bottom_up(builder.model));
+    write("scene", builder.model);
+    EXPECT_NE(includes("scene"), before);
+}
+
+TEST_F(SkyOcclusionScenes, ManyCopiesHaveAtMostFourGrades) {
+    Mesh mesh = shapes::sphere(1, 4);
+    const ObjectIndex ball = builder.mesh(mesh);
+    const ObjectIndex roof = builder.mesh(shapes::box({-20, -20, 2}, {20, 20, 3}));
+    for (int i = 0; i < 100; ++i)
+        builder.place(ball, at(i % 10 * 8, i / 10 * 8, 0));
+    builder.place(roof);
+    const ExportReport report = write("scene", builder.finish());
+    EXPECT_GE(report.sky_copies, 1u);
+    EXPECT_LE(report.sky_copies, 3u);
+    EXPECT_EQ(report.representations, 2 + report.sky_copies);
+}
+
+TEST_F(SkyOcclusionScenes, WhatMovesHidesTheSkyFromItselfAlone) {
+    const ObjectIndex floor = builder.mesh(shapes::quad(4, 4));
+    const ObjectIndex box = builder.mesh(shapes::box({-1, -1, .2}, {1, 1, 1}));
+    builder.place(floor, at(-2, -2, 0));
+    builder.place(box);
+    builder.model.objects[box].deforms = true;
+    write("scene", builder.finish());
+    EXPECT_EQ(ambients(includes("scene")).size(), 1u);
+}
+
+TEST_F(SkyOcclusionScenes, ABoxUnderARoofIsDarkerAsAWhole) {
+    Primitive primitive;
+    primitive.half_size = {.5, .5, .5};
+    const ObjectIndex box = builder.primitive(Kind::Box, primitive, {builder.matte({1, 1, 1})});
+    const ObjectIndex roof = builder.mesh(shapes::box({-50, -50, 2}, {50, 50, 3}));
+    builder.place(box);
+    builder.place(roof);
+    builder.place(box, at(500, 0, 0));
+    write("scene", builder.finish());
+    const choose::Cut cut = choose::choose_cut(builder.model, scenes::above());
+    Problems problems;
+    const SkyOcclusion light(builder.model, cut, {}, problems, {});
+    ASSERT_TRUE(light.of(0) && light.of(2));
+    EXPECT_LT(light.of(0)->factor, 0.75);
+    EXPECT_GT(light.of(2)->factor, 0.95);
+    EXPECT_NE(light.of(0)->hash, light.of(2)->hash);
+}
