@@ -29,6 +29,13 @@ class Inherited(unittest.TestCase):
         found = [quality(error).textures for error in (0.0, 0.5, 1.0, 1.5, 8.0)]
         self.assertEqual(found, [0.0, 0.0, 0.0, 1.5, 8.0])
 
+    def test_the_sky_is_occluded_but_in_draft_by_as_many_rays(self):
+        found = [quality(error).sky_occlusion for error in (0.0, 1.0, 2.0, 4.0, 7.9, 8.0)]
+        self.assertEqual(found, [128] * 5 + [0])
+        self.assertEqual(quality(1.0, {"shadows": 9.0}).sky_occlusion, 0)
+        self.assertEqual(quality(8.0).povray()["sky_rays"], -1)
+        self.assertEqual(quality(8.0, {"sky_occlusion": 16}).povray()["sky_rays"], 16)
+
     def test_preview_and_draft(self):
         preview, draft = quality(2.0), quality(8.0)
         self.assertEqual((preview.antialias, preview.antialias_threshold), ("FINAL", 0.2))
@@ -89,7 +96,7 @@ class Overridden(unittest.TestCase):
     def test_every_override_reaches_what_povray_gets(self):
         plain = quality(1.0).povray()
         own = {"textures": 4.0, "shadows": 4.0, "reflections": 4.0, "trace_depth": 9, "lights": 4.0}
-        own |= {"area_samples": 3, "indirect": 0, "bounces": 2}
+        own |= {"area_samples": 3, "indirect": 0, "bounces": 2, "sky_occlusion": 16}
         changed = set()
         for key, value in own.items():
             found = quality(1.0, {key: value}).povray()

@@ -61,6 +61,7 @@ class BlenderPictureWork:
             covered_only=request.covered_only,
             threads=job.threads,
             program=job.program,
+            bakes=str(store),
         )
         self.new_job = work.new_job
         self._scene: bpy.types.Scene = scene

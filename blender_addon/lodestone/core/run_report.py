@@ -69,6 +69,7 @@ def export_part(report: native.records.ExportReport) -> dict[str, Any]:
         "files": report.files,
         "written": report.written,
         "cpu_s": report.cpu_s,
+        "sky_copies": report.sky_copies,
     }
 
 

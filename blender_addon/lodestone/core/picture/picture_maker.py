@@ -34,6 +34,7 @@ class Settings:
     covered_only: bool = False
     threads: int = 0
     program: str = ""  # POV-Ray; "": $LODESTONE_POVRAY, else the PATH
+    bakes: str = ""  # the folder that keeps what was found of the sky's light; "": the scene's
     border: tuple[int, int, int, int] = (0, 0, 0, 0)  # left, top, width, height; width 0: all
 
     @property
@@ -61,6 +62,7 @@ class Settings:
             covered_only=self.covered_only,
             threads=self.threads,
             program=self.program,
+            bake_folder=self.bakes or None,
         )
 
     def view(self, camera: native.Camera, size: tuple[int, int]) -> native.View:

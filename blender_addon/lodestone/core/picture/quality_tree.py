@@ -46,6 +46,11 @@ def _same(error: float) -> float:
     return error
 
 
+def _sky_occlusion(shadows: float) -> int:
+    """The rays of a corner: as many at all errors, so that all share what was found."""
+    return 128 if shadows < _DRAFT else 0
+
+
 def _textures(error: float) -> float:
     """Up to a pixel nothing that the picture's samples show is blurred."""
     return error if error > 1.0 else 0.0
@@ -106,6 +111,12 @@ CONTROLS = (
         "pixels",
     ),
     Control(
+        "sky_occlusion", "Sky Occlusion", "shadows", _sky_occlusion, "", 0, 1024,
+        "Rays by which each corner of a mesh finds how much of the sky's even light reaches it: "
+        "under trees and roofs it is darker. What they find is kept for the next picture, and the "
+        "picture takes no longer. 0: the sky shines through everything. Bounces do without it",
+    ),
+    Control(
         "reflections", "Reflections", ROOT, _same, "px", 0.0, MOST_PIXELS,
         "Reflections and refractions that change the picture by less than so many steps of 255 "
         "are left out",
@@ -136,9 +147,8 @@ CONTROLS = (
     Control(
         "bounces", "Bounces", "antialias", _bounces, "", 0, 8,
         "How many times light goes from surface to surface before the camera sees it, as Diffuse "
-        "Bounces do in Cycles. It takes several times as long. 0: direct light only, with the sky "
-        "shining evenly through walls and ceilings: flat in a room lit through a window, which "
-        "needs 2 or more",
+        "Bounces do in Cycles. It takes several times as long. 0: direct light only; a room lit "
+        "through a window is dark then, and needs 2 or more",
     ),
 )  # fmt: skip
 CONTROL = {control.key: control for control in CONTROLS}
@@ -150,6 +160,7 @@ class Quality(NamedTuple):
     pixel_error: float
     textures: float
     shadows: float
+    sky_occlusion: int
     reflections: float
     trace_depth: int
     lights: float
@@ -175,6 +186,7 @@ class Quality(NamedTuple):
             "light_error": 0.0 if self.antialias == REFERENCE else max(self.lights, _LEAST_STEPS),
             "reflection_error": max(self.reflections, 1.0),
             "texture_error": self.textures,
+            "sky_rays": self.sky_occlusion or -1,
             "bounces": self.bounces,
             "bounce_rays": self.bounce_rays,
             "bounce_error": self.bounce_error,
