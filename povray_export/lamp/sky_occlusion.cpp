@@ -3,10 +3,10 @@
 
 #include "base/parallel.h"
 #include "light/sky_bakes.h"
+#include "povray_export/lamp/placement_grades.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <unordered_map>
@@ -17,9 +17,6 @@ namespace {
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
 constexpr uint32_t kBakeVersion = 1;
-// The grades of what is around the placements of one thing.
-// Taste: a larger value shades copies more truly, for a copy of the mesh each.
-constexpr int kPlacementGrades = 4;
 // The triangles of copies, beyond kPlacementGrades of a mesh, that have shares of their own: a share
 // of those of all distinct meshes, and some more.
 // Taste: a larger value shades small things more truly, for a copy of the mesh each.
@@ -29,9 +26,6 @@ constexpr double kCopiedTriangles = 5000;  // Taste: as kCopiedShare
 // Taste: a larger value draws sharper shade on large faces, for memory and parsing of each.
 constexpr double kSplitShare = 0.25;
 constexpr double kSplitTriangles = 2000;  // Taste: as kSplitShare
-// The step of square roots of shares below which placements share a grade.
-// Taste: a larger value saves copies of meshes.
-constexpr double kGradeStep = 0.1;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -73,55 +67,6 @@ void hash_transform(Hasher& hasher, const Affine& world) {
     world.to_rows(rows);
     for (const double value : rows)
         hasher.value(value);
-}
-
-/// The means of a list of placements, as bytes and back.
-std::string bytes_of(const std::vector<light::SkyMeans>& means) {
-    std::string out(means.size() * 2 * sizeof(float), '\0');
-    for (size_t i = 0; i < means.size(); ++i) {
-        const float pair[] = {static_cast<float>(means[i].placed),
-                              static_cast<float>(means[i].alone)};
-        std::memcpy(out.data() + i * sizeof pair, pair, sizeof pair);
-    }
-    return out;
-}
-std::optional<std::vector<light::SkyMeans>> means_of(std::string_view bytes, size_t count) {
-    float pair[2];
-    if (bytes.size() != count * sizeof pair)
-        return {};
-    std::vector<light::SkyMeans> out(count);
-    for (size_t i = 0; i < count; ++i) {
-        std::memcpy(pair, bytes.data() + i * sizeof pair, sizeof pair);
-        out[i] = {limited(pair[0], 0, 1), limited(pair[1], 0, 1)};
-    }
-    return out;
-}
-
-/// At most kPlacementGrades numbers in place of all: the means of those that are about as large.
-std::vector<double> graded(const std::vector<double>& shares) {
-    double low = 1;
-    double high = 0;
-    for (const double share : shares) {
-        low = std::min(low, std::sqrt(share));
-        high = std::max(high, std::sqrt(share));
-    }
-    const int count =
-        std::clamp(static_cast<int>(std::ceil((high - low) / kGradeStep)), 1, kPlacementGrades);
-    const auto grade_of = [&](double share) {
-        const double place = high > low ? (std::sqrt(share) - low) / (high - low) : 0;
-        return static_cast<size_t>(std::clamp(static_cast<int>(place * count), 0, count - 1));
-    };
-    std::vector<double> sums(static_cast<size_t>(count), 0);
-    std::vector<double> members(static_cast<size_t>(count), 0);
-    for (const double share : shares) {
-        sums[grade_of(share)] += share;
-        members[grade_of(share)] += 1;
-    }
-    std::vector<double> out;
-    out.reserve(shares.size());
-    for (const double share : shares)
-        out.push_back(sums[grade_of(share)] / members[grade_of(share)]);
-    return out;
 }
 
 double stepped(double factor) {
@@ -374,7 +319,7 @@ private:
             hash_transform(hasher, world);
         wanted.key = hasher.result();
         const auto bytes = bakes_.find(wanted.key);
-        auto found = bytes ? means_of(*bytes, wanted.places.size()) : std::nullopt;
+        auto found = bytes ? light::means_of(*bytes, wanted.places.size()) : std::nullopt;
         if (found)
             wanted.found = std::move(*found);
         else
@@ -431,7 +376,7 @@ private:
         for (const auto& [key, wanted] : missing_)
             bakes_.add(key, wanted->found->bytes());
         for (const WantedMeans* wanted : missing_means_)
-            bakes_.add(wanted->key, bytes_of(wanted->found));
+            bakes_.add(wanted->key, light::bytes_of(wanted->found));
     }
 
     static SkyLightPtr factor_light(double factor) {

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "model/view.h"
-#include "povray_export/scene/antialiasing.h"
+#include "povray_export/scene/shading.h"
 
 #include <string>
 

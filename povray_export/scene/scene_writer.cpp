@@ -14,14 +14,13 @@
 #include "povray_export/scene/include_files.h"
 #include "povray_export/scene/invertible_transform.h"
 #include "povray_export/scene/magnification.h"
+#include "povray_export/scene/occurrence_look.h"
 #include "povray_export/scene/occurrence_text.h"
 #include "povray_export/scene/povray_number.h"
 #include "povray_export/scene/ray_class_uses.h"
 #include "povray_export/scene/render_settings.h"
 #include "povray_export/scene/scene_head.h"
 #include "povray_export/texture/surface_finish.h"
-
-#include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -32,18 +31,6 @@
 
 namespace lodestone::povray {
 namespace {
-
-/// Whether a node is below an Environment group, or a stand-in for a group that holds Environment.
-bool environment(const Model& model, const choose::Cut& cut,
-                 const std::vector<uint8_t>& holds_environment, uint32_t node) {
-    if (holds_environment[cut.nodes[node].object] != 0)
-        return true;
-    for (uint32_t at = node; at != choose::kNoParent; at = cut.nodes[at].parent) {
-        if (model.objects[cut.nodes[at].object].role == ObjectRole::Environment)
-            return true;
-    }
-    return false;
-}
 
 /// The characters of a typical object, for reserving memory.
 /// Taste: a larger value reserves more than is used.
@@ -63,28 +50,6 @@ struct OccurrenceUse {
     RayMask in_place = 0;  // Not 0: in place of what the camera sees, for these classes only
     std::optional<glm::dvec3> dull = {};  // shown in this color alone
 };
-
-/// The color without its glow of a representation that glows and is hidden from gathering rays, as
-/// lights shine in its place. Nothing for all others.
-std::optional<glm::dvec3> without_glow(const Model& model, const Representation& representation,
-                                       RayMask hidden) {
-    if ((hidden & kRadiosityRays) == 0)
-        return {};
-    glm::dvec3 color(0.0);
-    bool glows = false;
-    double count = 0;
-    for (const uint32_t index : representation.materials) {
-        if (index >= model.materials.size())
-            continue;
-        const Material& material = model.materials[index];
-        glows = glows || glm::dot(material.emission, material.emission) > 0;
-        color += glm::clamp(material.base_color, 0.0, 1.0);
-        ++count;
-    }
-    if (!glows)
-        return {};
-    return color / count;
-}
 
 double process_cpu_s() {
     timespec now{};
@@ -257,7 +222,7 @@ private:
             const Representation& representation = object.representations.at(node.lod);
             if (representation.summary.kind == Kind::Assembly)
                 continue;
-            if (options_.covered_only && environment(model_, cut_, holds_environment, index))
+            if (options_.covered_only && is_environment(model_, cut_, holds_environment, index))
                 continue;
             if (nobody[index] != 0)
                 continue;

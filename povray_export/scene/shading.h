@@ -2,9 +2,16 @@
 // Shading: how finely a picture is lit and sampled, so that a rough model is also shaded roughly.
 #pragma once
 
-#include "povray_export/scene/antialiasing.h"
+#include <cstdint>
 
 namespace lodestone::povray {
+
+/// One setting for every picture that is compared with another. Nothing in it is random.
+enum class Antialiasing : uint8_t {
+    Off = 0,        // one sample a pixel, one ray a light: drafts
+    Final = 1,      // 9 more where neighbors differ by 0.1: +A0.1 +AM1 +R3, no jitter
+    Reference = 2,  // 16 more in every pixel: +A0.0 +AM1 +R4, no jitter
+};
 
 /// The designer's controls below Pixel Error (Figure 2.20), each with its value. A count or
 /// threshold of 0 is the one its setting of antialiasing stands for.

@@ -29,9 +29,6 @@ constexpr double kStep = 0.1;
 // The share of the triangles to be added that long edges get, before anything is known.
 // Taste: a larger value finds smaller things on a large ground, and follows their shade less.
 constexpr double kLongShare = 0.25;
-// Rounds of splits that follow the shares.
-// Law: log2 of kPartsOfLongest; no edge is split more often.
-constexpr int kSplitRounds = 4;
 // Closed meshes of up to so many triangles stay as they are: POV-Ray lets light through the edges
 // of finer walls.
 // Law: the meshes that the writer for POV-Ray writes without a tree.
@@ -39,238 +36,12 @@ constexpr size_t kFew = 16;
 // The share of an edge's length in its triangle's longest from which it is split with it.
 // Taste: a smaller value makes more triangles, a larger one thinner ones.
 constexpr double kLongEnough = 0.7;
-// A triangle that sees less may lie inside of something.
-// Taste: a larger value looks more often, for eight rays each.
-constexpr double kDark = 0.06;
-constexpr int kDarkRays = 8;    // Taste: more tell better whether it does
-constexpr int kFewestRays = 8;  // Taste: those of a triangle; more tell better where to split
-// Triangles side by side take different parts of the Sobol sequence, so that a corner is told about
-// as much as if all of its rays were one triangle's.
-// Taste: about the triangles at a corner; more parts are less even where these are few.
-constexpr uint32_t kParts = 8;
-// Where a ray begins, above its triangle, in parts of the triangle's longest edge and of the mesh.
-// Law: rays have single precision (6e-8 of the mesh); this is a large margin.
-constexpr double kAboveTriangle = 1e-4;
-constexpr double kAboveMesh = 4e-6;   // Law: as kAboveTriangle
-constexpr double kAboveScene = 1e-6;  // Law: as kAboveTriangle, of all that hides the sky
+// The rays of a triangle, at least.
+// Taste: more tell better where to split.
+constexpr int kFewestRays = 8;
 // The steps of a unit normal's coordinates within which flat triangles face the same way.
 // Taste: a larger value smooths less over folds.
 constexpr double kNormalSteps = 32;
-
-glm::dvec3 hemisphere_side(const glm::dvec3& unit) {
-    const glm::dvec3 other = std::abs(unit.z) < 0.7 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    return glm::normalize(glm::cross(unit, other));
-}
-
-/// The answers of the rays of one triangle.
-struct TriangleShares {
-    std::array<double, 3> seen{};  // by corner, weighted by how near each ray began
-    std::array<double, 3> rays{};  // the sum of these weights
-    /// The weights of rays that begin inside of something opaque, which are not in the others.
-    std::array<double, 3> inside_rays{};
-    bool inside = false;  // true: all of it lies inside of something opaque
-
-    double share() const {
-        const double sum = rays[0] + rays[1] + rays[2];
-        return sum > 0 ? (seen[0] + seen[1] + seen[2]) / sum : 0;
-    }
-};
-
-/// Casts the rays of one request from triangles of a mesh that lies on its surface.
-class SkySampler {
-public:
-    explicit SkySampler(const SkyRequest& request)
-        : request_(request), normal_map_(glm::transpose(glm::inverse(request.world.linear))) {
-        Box3 box;
-        for (const glm::vec3& position : request.surface.mesh->positions) {
-            if (finite(position))
-                box.add(glm::dvec3(position));
-        }
-        size_ = glm::length(box.size());
-        to_own_.linear = glm::inverse(request.world.linear);
-        above_ = kAboveMesh * size_;
-        if (request.around != nullptr) {
-            enlarged_ = stretch(request.world);
-            above_ =
-                request.error +
-                std::max(above_,
-                         enlarged_ > 0 ? kAboveScene * request.around->size() / enlarged_ : 0.0);
-        }
-    }
-
-    double size() const { return size_; }
-    /// Tells that the backs of a mesh are never seen.
-    void note_closed(bool closed) { closed_ = closed; }
-
-    /// The triangle in both frames; none for one without area.
-    struct PlacedTriangle {
-        std::array<glm::dvec3, 3> at;
-        glm::dvec3 face;     // unit, own frame
-        glm::dvec3 up;       // unit, world
-        double longest = 0;  // edge, own frame
-        double area = 0;     // world, twice
-    };
-    std::optional<PlacedTriangle> placed(const Mesh& mesh, size_t triangle) const {
-        const Triangle& t = mesh.triangles[triangle];
-        PlacedTriangle out;
-        for (int i = 0; i < 3; ++i)
-            out.at[static_cast<size_t>(i)] = glm::dvec3(mesh.positions[t[i]]);
-        const glm::dvec3 face = area_vector(mesh, triangle);
-        const glm::dvec3 up = normal_map_ * face;
-        const double length = glm::length(face);
-        const double up_length = glm::length(up);
-        if (!(length > 0) || !std::isfinite(length) || !(up_length > 0) ||
-            !std::isfinite(up_length))
-            return {};
-        out.face = face / length;
-        out.up = up / up_length;
-        for (size_t i = 0; i < 3; ++i)
-            out.longest = std::max(out.longest, glm::length(out.at[(i + 1) % 3] - out.at[i]));
-        const glm::dmat3& m = request_.world.linear;
-        out.area =
-            glm::length(glm::cross(m * (out.at[1] - out.at[0]), m * (out.at[2] - out.at[0])));
-        return out;
-    }
-
-    /// Whether the sky is hidden, on a ray from a point of the mesh (own frame, world direction).
-    bool hidden(const glm::dvec3& own, const glm::dvec3& direction, uint32_t& blocker) const {
-        return request_.around != nullptr
-                   ? request_.around->hides(request_.world(own), direction, blocker)
-                   : hidden_alone(own, direction);
-    }
-    bool hidden_alone(const glm::dvec3& own, const glm::dvec3& direction) const {
-        return request_.surface.scene->occluded(own, to_own_.linear * direction);
-    }
-
-    TriangleShares shares(const Mesh& mesh, size_t triangle, int rays) const {
-        TriangleShares out;
-        const std::optional<PlacedTriangle> placed = this->placed(mesh, triangle);
-        if (!placed)
-            return out;
-        const bool both = !request_.surface.opaque_slot(mesh.slot(triangle));
-        const uint32_t first =
-            static_cast<uint32_t>(triangle % kParts) * static_cast<uint32_t>(rays);
-        const double reach = placed->longest * enlarged_;
-        uint32_t blocker = ray::PlacedScenes::kNothing;
-        // Rays are cast in pairs: from one point to both sides of the normal, or from both sides of
-        // the triangle. Where one of the first kind begins inside of something, so does the other.
-        for (int i = 0; i < rays; i += 2) {
-            const uint32_t number = first + static_cast<uint32_t>(i / 2);
-            const SkyRay pair[] = {ray(mesh, triangle, *placed, number, false),
-                                   both ? ray(mesh, triangle, *placed, number, true)
-                                        : ray(mesh, triangle, *placed, number, false, true)};
-            double seen = 0;
-            bool inside = false;
-            for (const SkyRay& one : pair) {
-                const bool free = one.open && !hidden(one.from, one.direction, blocker);
-                seen += free ? 1 : 0;
-                inside = inside || (one.open && !free && !both && meets_near_back(one, reach));
-            }
-            for (size_t corner = 0; corner < 3; ++corner) {
-                const double weight = pair[0].weights[corner];
-                (inside ? out.inside_rays : out.rays)[corner] += 2 * weight;
-                if (!inside)
-                    out.seen[corner] += seen * weight;
-            }
-        }
-        const bool dark = !both && out.share() < kDark;
-        out.inside = dark && lies_inside(mesh, triangle, *placed);
-        if (dark && !out.inside && !closed_)
-            add_back(mesh, triangle, *placed, rays, out);
-        return out;
-    }
-
-    /// One ray: from where, whereto, and how near to the corners it begins.
-    struct SkyRay {
-        glm::dvec3 from;       // own frame
-        glm::dvec3 direction;  // unit, world
-        std::array<double, 3> weights;
-        bool open = false;  // false: it points into the surface
-    };
-    SkyRay ray(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, uint32_t number,
-               bool back, bool opposite = false) const {
-        const std::array<double, 4> point = points_.point(number);
-        const double root = std::sqrt(point[0]);
-        SkyRay out;
-        out.weights = {1 - root, root * (1 - point[1]), root * point[1]};
-        glm::dvec3 at(0.0);
-        glm::dvec3 smooth(0.0);
-        const Triangle& t = mesh.triangles[triangle];
-        for (size_t i = 0; i < 3; ++i) {
-            at += out.weights[i] * placed.at[i];
-            if (!mesh.normals.empty())
-                smooth += out.weights[i] * glm::dvec3(mesh.normals[t[static_cast<int>(i)]]);
-        }
-        glm::dvec3 normal = normal_map_ * smooth;
-        const double length = glm::length(normal);
-        normal = length > 0 && std::isfinite(length) && glm::dot(normal, placed.up) > 0
-                     ? normal / length
-                     : placed.up;
-        const double side = back ? -1 : 1;
-        normal *= side;
-        const glm::dvec3 u = hemisphere_side(normal);
-        const glm::dvec3 v = glm::cross(normal, u);
-        const double turn = 2 * kPi * (opposite ? point[2] + 0.5 : point[2]);
-        out.direction = std::sqrt(point[3]) * (std::cos(turn) * u + std::sin(turn) * v) +
-                        std::sqrt(1 - point[3]) * normal;
-        out.from = at + side * (above_ + kAboveTriangle * placed.longest) * placed.face;
-        out.open = side * glm::dot(out.direction, placed.up) > 0;
-        return out;
-    }
-
-    /// Whether a triangle lies inside of something opaque: many of its rays meet backs.
-    bool lies_inside(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed) const {
-        int backs = 0;
-        for (int i = 0; i < kDarkRays; ++i) {
-            const SkyRay ray = this->ray(mesh, triangle, placed, static_cast<uint32_t>(i), false);
-            backs += meets_near_back(ray, size_ * enlarged_) ? 1 : 0;
-        }
-        return 2 * backs >= kDarkRays;
-    }
-
-private:
-    /// Makes the share of a dark triangle the mean of its sides: it may be the wall of a cave, or
-    /// face the wrong way, and be seen from its back. Only the sky above counts there, for under a
-    /// ground nobody looks.
-    void add_back(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, int rays,
-                  TriangleShares& out) const {
-        std::array<double, 3> seen{};
-        std::array<double, 3> weights{};
-        uint32_t blocker = ray::PlacedScenes::kNothing;
-        for (int i = 0; i < rays; ++i) {
-            const SkyRay ray = this->ray(mesh, triangle, placed, static_cast<uint32_t>(i), true);
-            const bool free =
-                ray.open && ray.direction.z > 0 && !hidden(ray.from, ray.direction, blocker);
-            for (size_t corner = 0; corner < 3; ++corner) {
-                weights[corner] += ray.weights[corner];
-                seen[corner] += free ? ray.weights[corner] : 0;
-            }
-        }
-        for (size_t corner = 0; corner < 3; ++corner) {
-            const double back = weights[corner] > 0 ? seen[corner] / weights[corner] : 0;
-            out.seen[corner] = (out.seen[corner] + back * out.rays[corner]) / 2;
-        }
-    }
-
-    /// Whether a ray ends at the back of something opaque within `reach` (world): the back of a
-    /// roof is farther than that of what a thing stands in.
-    bool meets_near_back(const SkyRay& ray, double reach) const {
-        const SkyScene::SkyBlock block =
-            request_.around != nullptr
-                ? request_.around->first_block(request_.world(ray.from), ray.direction)
-                : first_block(request_.surface, ray.from, to_own_.linear * ray.direction);
-        return block.back && block.t <= reach;
-    }
-
-    const SkyRequest& request_;
-    glm::dmat3 normal_map_;
-    Affine to_own_;
-    double size_ = 0;
-    double above_ = 0;     // where rays begin, own frame
-    double enlarged_ = 1;  // by the placement
-    bool closed_ = true;
-    measure::SobolPoints points_{7};
-};
 
 /// The shares of a mesh's triangles while it is being split.
 class SkyBake {
@@ -537,96 +308,7 @@ private:
     std::vector<std::vector<geometry::WeldedEdge>> splits_;
 };
 
-/// Appends a number as its bytes.
-template <typename Number>
-void append_bytes(std::string& out, Number number) {
-    char bytes[sizeof number];
-    std::memcpy(bytes, &number, sizeof number);
-    out.append(bytes, sizeof number);
-}
-
-/// Takes numbers from the beginning of some bytes.
-class ByteReader {
-public:
-    explicit ByteReader(std::string_view bytes) : rest_(bytes) {}
-    template <typename Number>
-    bool take(Number& number) {
-        if (rest_.size() < sizeof number)
-            return false;
-        std::memcpy(&number, rest_.data(), sizeof number);
-        rest_.remove_prefix(sizeof number);
-        return true;
-    }
-    std::string_view rest() const { return rest_; }
-
-private:
-    std::string_view rest_;
-};
-
 }  // namespace
-
-uint8_t share_byte(double share) {
-    return static_cast<uint8_t>(std::lround(kShareSteps * std::sqrt(limited(share, 0, 1))));
-}
-
-double share_of_byte(uint8_t byte) {
-    const double root = static_cast<double>(byte) / kShareSteps;
-    return root * root;
-}
-
-std::string SkyShares::bytes() const {
-    std::string out;
-    append_bytes(out, mean);
-    append_bytes(out, static_cast<uint32_t>(splits.size()));
-    for (const std::vector<geometry::WeldedEdge>& edges : splits) {
-        append_bytes(out, static_cast<uint32_t>(edges.size()));
-        for (const geometry::WeldedEdge edge : edges)
-            append_bytes(out, edge);
-    }
-    out.append(reinterpret_cast<const char*>(corners.data()), corners.size());
-    return out;
-}
-
-std::optional<SkyShares> SkyShares::of_bytes(std::string_view bytes, size_t triangles) {
-    ByteReader reader(bytes);
-    SkyShares out;
-    uint32_t rounds = 0;
-    if (!reader.take(out.mean) || !(out.mean >= 0 && out.mean <= 1) || !reader.take(rounds) ||
-        rounds > 2 * kSplitRounds)
-        return {};
-    for (uint32_t round = 0; round < rounds; ++round) {
-        uint32_t count = 0;
-        if (!reader.take(count) || count > reader.rest().size() / sizeof(geometry::WeldedEdge))
-            return {};
-        std::vector<geometry::WeldedEdge>& edges = out.splits.emplace_back(count);
-        for (geometry::WeldedEdge& edge : edges)
-            reader.take(edge);
-        if (!std::is_sorted(edges.begin(), edges.end()))
-            return {};
-    }
-    const std::string_view rest = reader.rest();
-    if (rest.size() % 3 != 0 || rest.size() / 3 < triangles ||
-        (rounds == 0 && rest.size() / 3 != triangles))
-        return {};
-    out.corners.resize(rest.size());
-    std::memcpy(out.corners.data(), rest.data(), rest.size());
-    return out;
-}
-
-std::optional<Mesh> split_for_sky(const Mesh& mesh, const SkyShares& shares) {
-    const size_t most = shares.corners.size() / 3;
-    if (mesh.triangles.size() > most)
-        return {};
-    geometry::EdgeSplitMesh split(mesh);
-    for (const std::vector<geometry::WeldedEdge>& edges : shares.splits) {
-        if (split.triangles_after(edges) > most)
-            return {};
-        split.split(edges);
-    }
-    if (split.mesh().triangles.size() != most)
-        return {};
-    return split.take();
-}
 
 SkyShares sky_shares(const SkyRequest& request, const Job& job) {
     return SkyBake(request, job).run();
@@ -683,6 +365,28 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     if (all.rays > 0) {
         out.alone = all.alone / all.rays;
         out.placed = all.placed / all.rays;
+    }
+    return out;
+}
+
+std::string bytes_of(const std::vector<SkyMeans>& means) {
+    std::string out(means.size() * 2 * sizeof(float), '\0');
+    for (size_t i = 0; i < means.size(); ++i) {
+        const float pair[] = {static_cast<float>(means[i].placed),
+                              static_cast<float>(means[i].alone)};
+        std::memcpy(out.data() + i * sizeof pair, pair, sizeof pair);
+    }
+    return out;
+}
+
+std::optional<std::vector<SkyMeans>> means_of(std::string_view bytes, size_t count) {
+    float pair[2];
+    if (bytes.size() != count * sizeof pair)
+        return {};
+    std::vector<SkyMeans> out(count);
+    for (size_t i = 0; i < count; ++i) {
+        std::memcpy(pair, bytes.data() + i * sizeof pair, sizeof pair);
+        out[i] = {limited(pair[0], 0, 1), limited(pair[1], 0, 1)};
     }
     return out;
 }

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "light/sky_sampler.h"
+
+#include "base/maths.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::light {
+namespace {
+
+// A triangle that sees less may lie inside of something.
+// Taste: a larger value looks more often, for eight rays each.
+constexpr double kDark = 0.06;
+constexpr int kDarkRays = 8;  // Taste: more tell better whether it does
+// Triangles side by side take different parts of the Sobol sequence, so that a corner is told about
+// as much as if all of its rays were one triangle's.
+// Taste: about the triangles at a corner; more parts are less even where these are few.
+constexpr uint32_t kParts = 8;
+// Where a ray begins, above its triangle, in parts of the triangle's longest edge and of the mesh.
+// Law: rays have single precision (6e-8 of the mesh); this is a large margin.
+constexpr double kAboveTriangle = 1e-4;
+constexpr double kAboveMesh = 4e-6;   // Law: as kAboveTriangle
+constexpr double kAboveScene = 1e-6;  // Law: as kAboveTriangle, of all that hides the sky
+
+glm::dvec3 hemisphere_side(const glm::dvec3& unit) {
+    const glm::dvec3 other = std::abs(unit.z) < 0.7 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    return glm::normalize(glm::cross(unit, other));
+}
+
+}  // namespace
+
+SkySampler::SkySampler(const SkyRequest& request)
+    : request_(request), normal_map_(glm::transpose(glm::inverse(request.world.linear))) {
+    Box3 box;
+    for (const glm::vec3& position : request.surface.mesh->positions) {
+        if (finite(position))
+            box.add(glm::dvec3(position));
+    }
+    size_ = glm::length(box.size());
+    to_own_.linear = glm::inverse(request.world.linear);
+    above_ = kAboveMesh * size_;
+    if (request.around != nullptr) {
+        enlarged_ = stretch(request.world);
+        above_ = request.error +
+                 std::max(above_,
+                          enlarged_ > 0 ? kAboveScene * request.around->size() / enlarged_ : 0.0);
+    }
+}
+
+std::optional<SkySampler::PlacedTriangle> SkySampler::placed(const Mesh& mesh,
+                                                             size_t triangle) const {
+    const Triangle& t = mesh.triangles[triangle];
+    PlacedTriangle out;
+    for (int i = 0; i < 3; ++i)
+        out.at[static_cast<size_t>(i)] = glm::dvec3(mesh.positions[t[i]]);
+    const glm::dvec3 face = area_vector(mesh, triangle);
+    const glm::dvec3 up = normal_map_ * face;
+    const double length = glm::length(face);
+    const double up_length = glm::length(up);
+    if (!(length > 0) || !std::isfinite(length) || !(up_length > 0) || !std::isfinite(up_length))
+        return {};
+    out.face = face / length;
+    out.up = up / up_length;
+    for (size_t i = 0; i < 3; ++i)
+        out.longest = std::max(out.longest, glm::length(out.at[(i + 1) % 3] - out.at[i]));
+    const glm::dmat3& m = request_.world.linear;
+    out.area = glm::length(glm::cross(m * (out.at[1] - out.at[0]), m * (out.at[2] - out.at[0])));
+    return out;
+}
+
+bool SkySampler::hidden(const glm::dvec3& own, const glm::dvec3& direction,
+                        uint32_t& blocker) const {
+    return request_.around != nullptr
+               ? request_.around->hides(request_.world(own), direction, blocker)
+               : hidden_alone(own, direction);
+}
+
+bool SkySampler::hidden_alone(const glm::dvec3& own, const glm::dvec3& direction) const {
+    return request_.surface.scene->occluded(own, to_own_.linear * direction);
+}
+
+TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) const {
+    TriangleShares out;
+    const std::optional<PlacedTriangle> placed = this->placed(mesh, triangle);
+    if (!placed)
+        return out;
+    const bool both = !request_.surface.opaque_slot(mesh.slot(triangle));
+    const uint32_t first = static_cast<uint32_t>(triangle % kParts) * static_cast<uint32_t>(rays);
+    const double reach = placed->longest * enlarged_;
+    uint32_t blocker = ray::PlacedScenes::kNothing;
+    // Rays are cast in pairs: from one point to both sides of the normal, or from both sides of
+    // the triangle. Where one of the first kind begins inside of something, so does the other.
+    for (int i = 0; i < rays; i += 2) {
+        const uint32_t number = first + static_cast<uint32_t>(i / 2);
+        const SkyRay pair[] = {ray(mesh, triangle, *placed, number, false),
+                               both ? ray(mesh, triangle, *placed, number, true)
+                                    : ray(mesh, triangle, *placed, number, false, true)};
+        double seen = 0;
+        bool inside = false;
+        for (const SkyRay& one : pair) {
+            const bool free = one.open && !hidden(one.from, one.direction, blocker);
+            seen += free ? 1 : 0;
+            inside = inside || (one.open && !free && !both && meets_near_back(one, reach));
+        }
+        for (size_t corner = 0; corner < 3; ++corner) {
+            const double weight = pair[0].weights[corner];
+            (inside ? out.inside_rays : out.rays)[corner] += 2 * weight;
+            if (!inside)
+                out.seen[corner] += seen * weight;
+        }
+    }
+    const bool dark = !both && out.share() < kDark;
+    out.inside = dark && lies_inside(mesh, triangle, *placed);
+    if (dark && !out.inside && !closed_)
+        add_back(mesh, triangle, *placed, rays, out);
+    return out;
+}
+
+SkySampler::SkyRay SkySampler::ray(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed,
+                                   uint32_t number, bool back, bool opposite) const {
+    const std::array<double, 4> point = points_.point(number);
+    const double root = std::sqrt(point[0]);
+    SkyRay out;
+    out.weights = {1 - root, root * (1 - point[1]), root * point[1]};
+    glm::dvec3 at(0.0);
+    glm::dvec3 smooth(0.0);
+    const Triangle& t = mesh.triangles[triangle];
+    for (size_t i = 0; i < 3; ++i) {
+        at += out.weights[i] * placed.at[i];
+        if (!mesh.normals.empty())
+            smooth += out.weights[i] * glm::dvec3(mesh.normals[t[static_cast<int>(i)]]);
+    }
+    glm::dvec3 normal = normal_map_ * smooth;
+    const double length = glm::length(normal);
+    normal = length > 0 && std::isfinite(length) && glm::dot(normal, placed.up) > 0
+                 ? normal / length
+                 : placed.up;
+    const double side = back ? -1 : 1;
+    normal *= side;
+    const glm::dvec3 u = hemisphere_side(normal);
+    const glm::dvec3 v = glm::cross(normal, u);
+    const double turn = 2 * kPi * (opposite ? point[2] + 0.5 : point[2]);
+    out.direction = std::sqrt(point[3]) * (std::cos(turn) * u + std::sin(turn) * v) +
+                    std::sqrt(1 - point[3]) * normal;
+    out.from = at + side * (above_ + kAboveTriangle * placed.longest) * placed.face;
+    out.open = side * glm::dot(out.direction, placed.up) > 0;
+    return out;
+}
+
+bool SkySampler::lies_inside(const Mesh& mesh, size_t triangle,
+                             const PlacedTriangle& placed) const {
+    int backs = 0;
+    for (int i = 0; i < kDarkRays; ++i) {
+        const SkyRay ray = this->ray(mesh, triangle, placed, static_cast<uint32_t>(i), false);
+        backs += meets_near_back(ray, size_ * enlarged_) ? 1 : 0;
+    }
+    return 2 * backs >= kDarkRays;
+}
+
+void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, int rays,
+                          TriangleShares& out) const {
+    std::array<double, 3> seen{};
+    std::array<double, 3> weights{};
+    uint32_t blocker = ray::PlacedScenes::kNothing;
+    for (int i = 0; i < rays; ++i) {
+        const SkyRay ray = this->ray(mesh, triangle, placed, static_cast<uint32_t>(i), true);
+        const bool free =
+            ray.open && ray.direction.z > 0 && !hidden(ray.from, ray.direction, blocker);
+        for (size_t corner = 0; corner < 3; ++corner) {
+            weights[corner] += ray.weights[corner];
+            seen[corner] += free ? ray.weights[corner] : 0;
+        }
+    }
+    for (size_t corner = 0; corner < 3; ++corner) {
+        const double back = weights[corner] > 0 ? seen[corner] / weights[corner] : 0;
+        out.seen[corner] = (out.seen[corner] + back * out.rays[corner]) / 2;
+    }
+}
+
+bool SkySampler::meets_near_back(const SkyRay& ray, double reach) const {
+    const SkyScene::SkyBlock block =
+        request_.around != nullptr
+            ? request_.around->first_block(request_.world(ray.from), ray.direction)
+            : first_block(request_.surface, ray.from, to_own_.linear * ray.direction);
+    return block.back && block.t <= reach;
+}
+
+}  // namespace lodestone::light

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sky sampler: the rays that tell how much of the sky the triangles of a placed surface see.
+#pragma once
+
+#include "light/sky_scene.h"
+#include "measure/visible/sobol_points.h"
+
+#include <array>
+#include <optional>
+
+namespace lodestone::light {
+
+/// A placed surface, and what is around it.
+struct SkyRequest {
+    const SkySurface& surface;
+    Affine world;
+    /// All that hides the sky, the finest level of this surface too; null: the surface alone hides
+    /// the sky from itself.
+    const SkyScene* around = nullptr;
+    double error = 0;   // metres, own frame: how far the surface may lie from its finest level
+    int rays = 128;     // about so many tell the share of a corner
+    size_t splits = 0;  // about how many triangles splits may add
+};
+
+/// The answers of the rays of one triangle.
+struct TriangleShares {
+    std::array<double, 3> seen{};  // by corner, weighted by how near each ray began
+    std::array<double, 3> rays{};  // the sum of these weights
+    /// The weights of rays that begin inside of something opaque, which are not in the others.
+    std::array<double, 3> inside_rays{};
+    bool inside = false;  // true: all of it lies inside of something opaque
+
+    double share() const {
+        const double sum = rays[0] + rays[1] + rays[2];
+        return sum > 0 ? (seen[0] + seen[1] + seen[2]) / sum : 0;
+    }
+};
+
+/// Casts the rays of one request from triangles of a mesh that lies on its surface.
+class SkySampler {
+public:
+    explicit SkySampler(const SkyRequest& request);
+
+    double size() const { return size_; }
+    /// Tells that the backs of a mesh are never seen.
+    void note_closed(bool closed) { closed_ = closed; }
+
+    /// The triangle in both frames; none for one without area.
+    struct PlacedTriangle {
+        std::array<glm::dvec3, 3> at;
+        glm::dvec3 face;     // unit, own frame
+        glm::dvec3 up;       // unit, world
+        double longest = 0;  // edge, own frame
+        double area = 0;     // world, twice
+    };
+    std::optional<PlacedTriangle> placed(const Mesh& mesh, size_t triangle) const;
+
+    /// Whether the sky is hidden, on a ray from a point of the mesh (own frame, world direction).
+    bool hidden(const glm::dvec3& own, const glm::dvec3& direction, uint32_t& blocker) const;
+    bool hidden_alone(const glm::dvec3& own, const glm::dvec3& direction) const;
+
+    TriangleShares shares(const Mesh& mesh, size_t triangle, int rays) const;
+
+    /// One ray: from where, whereto, and how near to the corners it begins.
+    struct SkyRay {
+        glm::dvec3 from;       // own frame
+        glm::dvec3 direction;  // unit, world
+        std::array<double, 3> weights;
+        bool open = false;  // false: it points into the surface
+    };
+    SkyRay ray(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, uint32_t number,
+               bool back, bool opposite = false) const;
+
+    /// Whether a triangle lies inside of something opaque: many of its rays meet backs.
+    bool lies_inside(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed) const;
+
+private:
+    /// Makes the share of a dark triangle the mean of its sides: it may be the wall of a cave, or
+    /// face the wrong way, and be seen from its back. Only the sky above counts there, for under a
+    /// ground nobody looks.
+    void add_back(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, int rays,
+                  TriangleShares& out) const;
+
+    /// Whether a ray ends at the back of something opaque within `reach` (world): the back of a
+    /// roof is farther than that of what a thing stands in.
+    bool meets_near_back(const SkyRay& ray, double reach) const;
+
+    const SkyRequest& request_;
+    glm::dmat3 normal_map_;
+    Affine to_own_;
+    double size_ = 0;
+    double above_ = 0;     // where rays begin, own frame
+    double enlarged_ = 1;  // by the placement
+    bool closed_ = true;
+    measure::SobolPoints points_{7};
+};
+
+}  // namespace lodestone::light
