@@ -2,7 +2,7 @@
 #include "povray_export/lamp/sky_occlusion.h"
 
 #include "base/parallel.h"
-#include "light/sky_bakes.h"
+#include "light/sky/sky_bakes.h"
 #include "povray_export/lamp/placement_grades.h"
 
 #include <algorithm>

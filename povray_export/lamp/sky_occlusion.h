@@ -5,7 +5,7 @@
 
 #include "base/job.h"
 #include "choose/cut.h"
-#include "light/sky_visibility.h"
+#include "light/sky/sky_visibility.h"
 
 #include <filesystem>
 #include <functional>

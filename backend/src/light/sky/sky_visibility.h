@@ -2,8 +2,8 @@
 // Sky visibility: the share of a uniform sky that the corners of a mesh see, weighted by cosine.
 #pragma once
 
-#include "light/sky_sampler.h"
-#include "light/sky_shares.h"
+#include "light/sky/sky_sampler.h"
+#include "light/sky/sky_shares.h"
 
 namespace lodestone::light {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards how much of the sky surfaces see, by answers that are known.
 #include "base/parallel.h"
-#include "light/sky_visibility.h"
+#include "light/sky/sky_visibility.h"
 #include "povray/povray_scenes.h"
 #include "scenes/damaged_files.h"
 

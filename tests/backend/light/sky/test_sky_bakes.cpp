@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards what is kept of the sky's light: it comes back, grows old, and a damaged file is empty.
 #include "base/files.h"
-#include "light/sky_bakes.h"
+#include "light/sky/sky_bakes.h"
 #include "scenes/damaged_files.h"
 #include "scratch.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "light/sky_scene.h"
+#include "light/sky/sky_scene.h"
 
 #include "base/parallel.h"
 

@@ -2,7 +2,7 @@
 // Sky sampler: the rays that tell how much of the sky the triangles of a placed surface see.
 #pragma once
 
-#include "light/sky_scene.h"
+#include "light/sky/sky_scene.h"
 #include "measure/visible/sobol_points.h"
 
 #include <array>

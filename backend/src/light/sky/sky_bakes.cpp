@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "light/sky_bakes.h"
+#include "light/sky/sky_bakes.h"
 
 #include "base/error.h"
 #include "base/files.h"

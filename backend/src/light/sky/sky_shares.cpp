@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "light/sky_shares.h"
+#include "light/sky/sky_shares.h"
 
 #include "base/maths.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "light/sky_visibility.h"
+#include "light/sky/sky_visibility.h"
 
 #include "base/parallel.h"
 #include "measure/visible/sobol_points.h"
