@@ -31,9 +31,9 @@ constexpr double kSplitTriangles = 2000;  // Taste: as kSplitShare
 constexpr int kMeanRays = 128;
 constexpr int kFewestMeanRays = 16;          // Taste: as kMeanRays
 constexpr double kMostMeanRays = 1'000'000;  // Taste: rays of all placements together
-// A scene of more is not looked through.
-// Taste: it would take minutes and gigabytes.
-constexpr uint64_t kMostTriangles = 6'000'000;
+// Distinct triangles of a scene that is looked through, at most.
+// Taste: more would take longer than most pictures.
+constexpr uint64_t kMostTriangles = 600'000;
 constexpr size_t kMostLeaves = 2'000'000;  // Taste: as kMostTriangles
 // The steps of a factor.
 // Taste: fine enough to keep means, coarse enough that rounding does not make other files.
@@ -162,6 +162,7 @@ private:
             things_.push_back(thing);
         }
         uint64_t triangles = 0;
+        uint64_t hiding_triangles = 0;
         Hasher scene;
         scene.value(kBakeVersion).value(options_.rays);
         for (const SkyLeaf& leaf : leaves_) {
@@ -173,6 +174,7 @@ private:
             if (!leaf.hides)
                 continue;
             ++hiding_;
+            hiding_triangles += mesh.triangles;
             scene.value(summary.hash);
             hash_transform(scene, leaf.world);
             sizes_ += transformed(summary.bound, leaf.world).radius;
@@ -180,7 +182,8 @@ private:
         scene_hash_ = scene.result();
         triangles_ = triangles;
         choose_copied();
-        return triangles <= kMostTriangles;
+        // Rays through what cannot be joined take ten times as long.
+        return triangles <= kMostTriangles && hiding_triangles <= light::SkyScene::kMostJoined;
     }
 
     const Representation& finest_of(const SkyLeaf& leaf) const {

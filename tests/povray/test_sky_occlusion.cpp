@@ -169,6 +169,22 @@ TEST_F(SkyOcclusionScenes, ManyCopiesHaveAtMostFourGrades) {
     EXPECT_EQ(report.representations, 2 + report.sky_copies);
 }
 
+TEST_F(SkyOcclusionScenes, ALargeStreetIsNotLookedThroughForMinutes) {
+    // Its bake took more than twelve minutes of CPU; now it is left out, and told.
+    const ObjectIndex ring =
+        builder.mesh(shapes::torus(256, 256), {builder.matte({.5, .5, .5})});  // 131,072
+    for (int i = 0; i < 12; ++i)
+        builder.place_at(ring, {4.0 * i, 0, 0});
+    ExportOptions options;
+    options.folder = own_scratch() / "street";
+    options.shading.sky_rays = 64;
+    Problems problems;
+    scenes::write(builder.finish(), scenes::above(), options, problems);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].code, "sky_not_occluded");
+    EXPECT_EQ(ambients(includes("street")).size(), 1u);
+}
+
 TEST_F(SkyOcclusionScenes, WhatMovesHidesTheSkyFromItselfAlone) {
     const ObjectIndex floor = builder.mesh(shapes::quad(4, 4));
     const ObjectIndex box = builder.mesh(shapes::box({-1, -1, .2}, {1, 1, 1}));
