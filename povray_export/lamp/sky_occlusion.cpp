@@ -483,9 +483,9 @@ SkyOcclusion::SkyOcclusion(const Model& model, const choose::Cut& cut,
 }
 
 SkyLightPtr SkyOcclusion::mean_of_node(uint32_t node) const {
-    const auto at =
-        std::lower_bound(means_.begin(), means_.end(), node,
-                         [](const auto& mean, uint32_t wanted) { return mean.first < wanted; });
+    const auto at = std::lower_bound(means_.begin(), means_.end(), node,
+                                     [](const std::pair<uint32_t, SkyLightPtr>& mean,
+                                        uint32_t wanted) { return mean.first < wanted; });
     return at != means_.end() && at->first == node ? at->second : nullptr;
 }
 
