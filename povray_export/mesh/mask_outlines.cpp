@@ -225,13 +225,14 @@ MaskOutlinePtr MaskOutlines::outline_at(const ShownMask& mask, const image::Mask
                                         int halvings, double level, Hash key) {
     // Outlines that are nearer to each other than the tolerance may cross: then it is made smaller.
     const double part = part_of(mask.tolerance, halvings);
-    for (double tolerance = part; tolerance > part / 16; tolerance /= 2) {
+    for (int halving = 0; halving < 4; ++halving) {
+        const double tolerance = std::ldexp(part, -halving);
         const Hash own = Hasher().value(key).value(tolerance).result();
         const OutlineRingsPtr rings =
             rings_.of(own, [&] { return rings_of(mask, texels, halvings, level, tolerance); });
         if (!rings || rings->corners > mask.most_corners)
             return nullptr;
-        const MaskOutlinePtr found = outlines_.of(own, [&]() -> MaskOutlinePtr {
+        MaskOutlinePtr found = outlines_.of(own, [&]() -> MaskOutlinePtr {
             auto out = std::make_shared<MaskOutline>();
             out->inside = triangulated(rings->simple);
             out->level = level;
@@ -285,7 +286,7 @@ MaskOutlinePtr MaskOutlines::hull(const Texture& texture, size_t most_corners) {
                              .value(texture.extension == TextureExtension::Repeat)
                              .value(halvings)
                              .result();
-        const MaskOutlinePtr found = hulls_.of(key, [&] { return hull_at(texture, halvings); });
+        MaskOutlinePtr found = hulls_.of(key, [&] { return hull_at(texture, halvings); });
         if (!found)
             return nullptr;
         if (found->inside.points.size() <= most_corners)

@@ -40,7 +40,7 @@ double covered(const float (&v)[4], double level) {
                           : reach(own, before, level) * reach(own, after, level) / 2;
     };
     if (count == 0 || count == 4)
-        return count / 4;
+        return count == 4 ? 1 : 0;
     const auto is_inside = [&](int k) { return static_cast<double>(v[k % 4]) >= level; };
     const bool saddle = count == 2 && is_inside(0) == is_inside(2);
     if (count == 2 && !saddle) {

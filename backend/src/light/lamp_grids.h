@@ -12,6 +12,7 @@ struct LampGrid {
     int rays = 1;        // along its longer edge; 1: one shadow ray, to its middle
     bool parts = false;  // each part of it lights by its own distance and angle
 
+    // NOLINTNEXTLINE(modernize-use-nullptr)
     auto operator<=>(const LampGrid&) const = default;
 };
 

@@ -56,7 +56,8 @@ double from_area(const Light& area, const glm::dvec3& point, const glm::dvec3& n
     int count = 0;
     for (int i = 0; i < parts * parts; ++i) {
         const double u = (i % parts + 0.5) / parts - 0.5;
-        const double v = (i / parts + 0.5) / parts - 0.5;
+        const int row = i / parts;
+        const double v = (row + 0.5) / parts - 0.5;
         if (area.round && u * u + v * v > 0.25)
             continue;
         ++count;

@@ -94,6 +94,7 @@ private:
         double score = 0;
         uint32_t node = 0;
         bool drawn = false;  // false: it is left out
+        // NOLINTNEXTLINE(modernize-use-nullptr)
         auto operator<=>(const OpenLight&) const = default;
     };
 

@@ -46,6 +46,7 @@ struct GroupLight {
     uint32_t light = 0;  // index of LightPlan::lights
     LampGrid grid;
 
+    // NOLINTNEXTLINE(modernize-use-nullptr)
     auto operator<=>(const GroupLight&) const = default;
 };
 

@@ -251,6 +251,7 @@ private:
                 plane.axis = axis;
         }
         std::vector<double> places;
+        places.reserve(points.size());
         for (const uint32_t point : points)
             places.push_back(points_[point].position[plane.axis]);
         std::sort(places.begin(), places.end());
