@@ -27,11 +27,6 @@ constexpr int kMostRays = 129;
 /// Taste: twice the real sun's; a larger value casts fewer first rays for more suns.
 constexpr double kNarrowSun = 0.009;
 
-glm::dvec3 perpendicular(const glm::dvec3& unit) {
-    const glm::dvec3 other = std::abs(unit.z) < 0.7 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    return glm::normalize(glm::cross(unit, other));
-}
-
 /// A grid of rays along both edges: 2^n + 1, for POV-Ray refines by halving.
 struct RayGrid {
     int u = 1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/scene/include_files.h"
 
+#include "base/clock.h"
 #include "base/files.h"
 #include "base/parallel.h"
 #include "povray_export/mesh/mesh_cutting.h"
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <fstream>
 #include <optional>
 
@@ -47,12 +47,6 @@ int exponent_of(double texel) {
 
 }  // namespace
 
-double thread_cpu_s() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 size_t IncludeFiles::add(const Representation& representation, const RepresentationOptions& options,
                          double outline) {
     // The steps of outlines whose uses share a file.
@@ -69,8 +63,7 @@ size_t IncludeFiles::add(const Representation& representation, const Representat
         files_.back().options = own;
         if (masked)
             files_.back().options.outline = step;
-        files_.back().pictured =
-            smaller_ && options.textures && shows(representation, options, textured);
+        files_.back().pictured = options.textures && shows(representation, options, textured);
     }
     std::optional<int>& least = files_[at->second].options.outline;
     if (least)
@@ -137,7 +130,7 @@ void IncludeFiles::write(const Job& job) {
     std::atomic<size_t> done{0};
     parallel_for(files_.size(), [&](size_t i) {
         job.check();
-        const double start = thread_cpu_s();
+        const double start = thread_cpu_seconds();
         IncludeFile& include = files_[i];
         if (include.same)
             return;
@@ -165,7 +158,7 @@ void IncludeFiles::write(const Job& job) {
             include.clear_layers =
                 std::strtod(text.c_str() + layers + std::strlen(kClearLayers), nullptr);
         include.bumps_left_out = text.find(kBumpsLeftOut) != std::string::npos;
-        include.cpu_s = thread_cpu_s() - start;
+        include.cpu_s = thread_cpu_seconds() - start;
         job.progress(static_cast<double>(++done) / static_cast<double>(files_.size() + 1));
     });
 }

@@ -31,9 +31,8 @@ struct IncludeFile {
 /// The include files of one scene. The model must outlive them.
 class IncludeFiles {
 public:
-    /// `smaller` says that large pictures are halved as far as texels allow.
-    IncludeFiles(const Model& model, std::filesystem::path folder, bool smaller)
-        : model_(model), folder_(std::move(folder)), smaller_(smaller), pictures_(folder_) {}
+    IncludeFiles(const Model& model, std::filesystem::path folder)
+        : model_(model), folder_(std::move(folder)), pictures_(folder_) {}
 
     /// Adds a representation and returns the index of its file; copies share one. Where it shows a
     /// mask those do whose outlines may be off by about as many metres of its own frame: so far and
@@ -54,7 +53,6 @@ public:
     /// Whether the file stands for itself.
     bool is_own(size_t index) const { return !files_[index].same; }
     size_t size() const { return files_.size(); }
-    /// #include of each.
     /// The text that includes all files.
     std::string statements() const;
     PictureFolder::PictureTotals pictures() const { return pictures_.totals(); }
@@ -62,21 +60,17 @@ public:
     bool refracts() const;
 
 private:
-    /// Whether a mesh with texture coordinates shows a material that `is` so.
     void merge_uncut(const Job& job);
+    /// Whether a mesh with texture coordinates shows a material that `is` so.
     bool shows(const Representation& representation, const RepresentationOptions& options,
                bool (*is)(const Material&)) const;
 
     const Model& model_;
     std::filesystem::path folder_;
-    bool smaller_;
     PictureFolder pictures_;
     MaskOutlines outlines_;
     std::vector<IncludeFile> files_;
     std::unordered_map<Hash, size_t> known_;  // by file_hash() without the texel
 };
-
-/// The CPU seconds of this thread.
-double thread_cpu_s();
 
 }  // namespace lodestone::povray

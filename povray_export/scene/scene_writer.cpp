@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/scene/scene_writer.h"
 
+#include "base/clock.h"
 #include "base/files.h"
 #include "choose/criterion.h"
 #include "light/light_arrival.h"
@@ -24,7 +25,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <set>
 #include <span>
@@ -51,12 +51,6 @@ struct OccurrenceUse {
     std::optional<glm::dvec3> dull = {};  // shown in this color alone
 };
 
-double process_cpu_s() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 class SceneWriter {
 public:
     SceneWriter(const Model& model, const choose::Cut& cut, const View& view,
@@ -68,10 +62,10 @@ public:
           problems_(problems),
           job_(job),
           shading_(shading_of(options, view.pixel_error)),
-          includes_(model, options.folder, shading_.texture_error > 0) {}
+          includes_(model, options.folder) {}
 
     ExportReport write() {
-        const double start = thread_cpu_s();
+        const double start = thread_cpu_seconds();
         job_.stage(JobStage::Export);
         check_view(view_);
         if (!options_.colors.empty() && options_.colors.size() != cut_.chosen.size())
@@ -82,10 +76,10 @@ public:
             sky_ = write_sky(view_world(), sky_sampling(), options_.folder, problems_);
         find_sky_light();
         collect();
-        const double before_files = thread_cpu_s();
+        const double before_files = thread_cpu_seconds();
         includes_.write(job_);
         hide_replaced();
-        const double after_files = thread_cpu_s();
+        const double after_files = thread_cpu_seconds();
         name_problems();
         if (!sky_.file.empty()) {
             report_.bytes += sky_.bytes;
@@ -115,7 +109,7 @@ public:
         report.bytes += pictures.bytes;
         report.files += pictures.files;
         report.written += pictures.written;
-        report.cpu_s += before_files - start + thread_cpu_s() - after_files;
+        report.cpu_s += before_files - start + thread_cpu_seconds() - after_files;
         job_.progress(1);
         return report;
     }
@@ -152,11 +146,11 @@ private:
         wanted.rays = shading_.sky_rays;
         wanted.file = (options_.bakes.empty() ? options_.folder : options_.bakes) / kFile;
         wanted.load_finest = options_.load_finest;
-        const double thread_start = thread_cpu_s();
-        const double process_start = process_cpu_s();
+        const double thread_start = thread_cpu_seconds();
+        const double process_start = cpu_seconds();
         sky_light_.emplace(model_, cut_, wanted, problems_, job_);
         // Other threads helped; this one is counted with all it does.
-        report_.cpu_s += process_cpu_s() - process_start - (thread_cpu_s() - thread_start);
+        report_.cpu_s += cpu_seconds() - process_start - (thread_cpu_seconds() - thread_start);
     }
 
     void collect_own() {
@@ -333,6 +327,7 @@ private:
         // Where light is gathered, walls shadow a sky.
         if (shading_.bounces == 0)
             demands.sky = sky_.ambient;
+        demands.sky_shaded = shading_.sky_rays > 0;
         std::vector<Light> suns = sky_.lights;
         suns.insert(suns.end(), model_.lights.begin(), model_.lights.end());
         demands.suns = suns;

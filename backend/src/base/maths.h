@@ -46,6 +46,12 @@ inline double largest(const glm::dvec3& v) {
     return glm::max(v.x, glm::max(v.y, v.z));
 }
 
+/// A unit vector at a right angle to a unit vector.
+inline glm::dvec3 perpendicular(const glm::dvec3& unit) {
+    const glm::dvec3 other = std::abs(unit.z) < 0.7 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    return glm::normalize(glm::cross(unit, other));
+}
+
 inline double trace(const glm::dmat3& m) {
     return m[0][0] + m[1][1] + m[2][2];
 }

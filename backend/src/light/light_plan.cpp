@@ -215,7 +215,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
                             !scene.partly_clear(i));
     }
     const size_t even = grid.points.size();
-    scene.add_other_light(demands.suns, demands.sky, grid.points, job);
+    scene.add_other_light(demands, grid.points, job);
     const std::vector<uint8_t> cells =
         cells_with_lamps(model.lights, view, grid, demands.sky, pixel_error, job);
     const std::vector<PointSighting> sightings =
@@ -229,7 +229,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     const Reaches reaches = [&](const Light& light, const LitPoint& point, uint32_t& blocker) {
         return scene.reaches(light, point, blocker);
     };
-    scene.add_other_light(demands.suns, demands.sky, std::span(points).subspan(even), job);
+    scene.add_other_light(demands, std::span(points).subspan(even), job);
     LightShares shares = find_shares(tree, points, reaches, pixel_error, job);
     std::vector<double> weights;
     for (size_t i = 0; i < tree.nodes.size() && tree.nodes[i].leaf(); ++i) {

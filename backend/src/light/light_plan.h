@@ -65,9 +65,10 @@ struct LightPlan {
 
 /// The demands that a plan meets, besides the view.
 struct LightDemands {
-    GridDemands grids;              // with the Pixel Error of lights
-    int bounces = 0;                // how often light goes from surface to surface
-    glm::dvec3 sky{0.0};            // radiance that lights every surface alike, without shadows
+    GridDemands grids;        // with the Pixel Error of lights
+    int bounces = 0;          // how often light goes from surface to surface
+    glm::dvec3 sky{0.0};      // radiance of the sky's uniform light
+    bool sky_shaded = false;  // true: as far as surfaces see the sky; else all of it everywhere
     std::span<const Light> suns{};  // what else lights the points; lamps among them do not count
 };
 

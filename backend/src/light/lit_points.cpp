@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "choose/criterion.h"
 #include "light/light_arrival.h"
+#include "measure/visible/convex_bound.h"
 
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
@@ -46,11 +47,6 @@ bool see_through(const Material& material) {
         (!material.alpha_texture && material.alpha >= 1 && !material.vertex_colors);
     return !covered || material.transmission > 0 ||
            (material.other && see_through(*material.other));
-}
-
-glm::dvec3 any_across(const glm::dvec3& unit) {
-    const glm::dvec3 other = std::abs(unit.z) < 0.7 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    return glm::normalize(glm::cross(unit, other));
 }
 
 }  // namespace
@@ -212,7 +208,7 @@ void LitScene::bounce(int times, PcgRandom& random, std::vector<LitPoint>& out) 
         const LitPoint& from = out.back();
         const double turn = 2 * std::numbers::pi * random.uniform();
         const double out_of = random.uniform();  // the square of the sine
-        const glm::dvec3 u = any_across(from.normal);
+        const glm::dvec3 u = perpendicular(from.normal);
         const glm::dvec3 v = glm::cross(from.normal, u);
         SightRay ray;
         ray.origin = from.position + from.aside;
@@ -278,13 +274,30 @@ bool LitScene::clear(const glm::dvec3& from, const glm::dvec3& to) const {
     return !blocking_.occluded(from + way * kRelative, way, 1 - 2 * kRelative);
 }
 
-void LitScene::add_other_light(std::span<const Light> suns, const glm::dvec3& sky,
-                               std::span<LitPoint> points, const Job& job) const {
+double LitScene::sky_share(const LitPoint& point, size_t number) const {
+    // The rays by which a point finds how much of the sky it sees.
+    // Taste: more tell better which lamps the sky outshines, at every point.
+    constexpr int kRays = 8;
+    PcgRandom random(2, number);
+    uint32_t blocker = ray::PlacedScenes::kNothing;
+    int free = 0;
+    for (int i = 0; i < kRays; ++i) {
+        const double u = (i + random.uniform()) / kRays;
+        const glm::dvec3 way = measure::cosine_direction(point.normal, u, random.uniform());
+        if (!dimming_.occluded(point.position + point.aside, way,
+                               std::numeric_limits<double>::infinity(), blocker))
+            ++free;
+    }
+    return (free + 0.5) / (kRays + 1);
+}
+
+void LitScene::add_other_light(const LightDemands& demands, std::span<LitPoint> points,
+                               const Job& job) const {
     // The strongest suns that are asked for; light of others is as if it were not there.
     // Taste: more cost a ray at every point, and leave out a little more.
     constexpr size_t kMostSuns = 8;
     std::vector<const Light*> strongest;
-    for (const Light& light : suns) {
+    for (const Light& light : demands.suns) {
         if (shines_as_sun(light))
             strongest.push_back(&light);
     }
@@ -298,7 +311,8 @@ void LitScene::add_other_light(std::span<const Light> suns, const glm::dvec3& sk
         const size_t end = std::min(points.size(), (strip + 1) * kPointStrip);
         for (size_t i = strip * kPointStrip; i < end; ++i) {
             LitPoint& point = points[i];
-            point.other_light = point.albedo * glm::max(sky, glm::dvec3(0.0));
+            const double seen = demands.sky_shaded ? sky_share(point, i) : 1;
+            point.other_light = point.albedo * glm::max(demands.sky, glm::dvec3(0.0)) * seen;
             for (size_t k = 0; k < strongest.size(); ++k) {
                 const glm::dvec3 way = -glm::normalize(strongest[k]->direction);
                 const double cosine = glm::dot(way, point.normal);
@@ -331,7 +345,7 @@ double LitScene::reaches(const Light& light, const LitPoint& point, uint32_t& bl
     glm::dvec3 u = light.edge_u * 0.4;
     glm::dvec3 v = light.edge_v * 0.4;
     if (light.kind != LightKind::Area) {
-        u = any_across(distance > 0 ? way / distance : glm::dvec3(0, 0, 1)) * (0.6 * extent);
+        u = perpendicular(distance > 0 ? way / distance : glm::dvec3(0, 0, 1)) * (0.6 * extent);
         v = distance > 0 ? glm::cross(way / distance, u) : glm::dvec3(0.0);
     }
     const std::array<glm::dvec3, 5> places = {light.position, light.position + u + v,

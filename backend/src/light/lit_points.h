@@ -38,11 +38,14 @@ public:
         return followed(ray_at(view, x, y));
     }
 
-    /// Sets the light that points get besides lamps: of a sky that lights every surface alike, and
-    /// of suns where nothing hides them (what is partly clear hides them, too).
-    void add_other_light(std::span<const Light> suns, const glm::dvec3& sky,
-                         std::span<LitPoint> points, const Job& job) const;
+    /// Sets the light that points get besides lamps: of a uniform sky, as far as they see it where
+    /// it is shaded, and of suns where nothing hides them (what is partly clear hides both).
+    void add_other_light(const LightDemands& demands, std::span<LitPoint> points,
+                         const Job& job) const;
 
+    /// About the share of the sky that a point sees, weighted by the cosine: never 0, as few rays
+    /// tell it.
+    double sky_share(const LitPoint& point, size_t number) const;
     /// The share of a light that reaches a point; see-through surfaces hide nothing. `blocker`: see
     /// Reaches.
     double reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const;

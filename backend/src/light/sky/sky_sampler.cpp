@@ -2,6 +2,7 @@
 #include "light/sky/sky_sampler.h"
 
 #include "base/maths.h"
+#include "measure/visible/convex_bound.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -25,11 +26,6 @@ constexpr uint32_t kParts = 8;
 constexpr double kAboveTriangle = 1e-4;
 constexpr double kAboveMesh = 4e-6;   // Law: as kAboveTriangle
 constexpr double kAboveScene = 1e-6;  // Law: as kAboveTriangle, of all that hides the sky
-
-glm::dvec3 hemisphere_side(const glm::dvec3& unit) {
-    const glm::dvec3 other = std::abs(unit.z) < 0.7 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    return glm::normalize(glm::cross(unit, other));
-}
 
 }  // namespace
 
@@ -123,9 +119,9 @@ TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) c
 SkySampler::SkyRay SkySampler::ray(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed,
                                    uint32_t number, bool back, bool opposite) const {
     const std::array<double, 4> point = points_.point(number);
-    const double root = std::sqrt(point[0]);
+    const glm::dvec2 weights = measure::uniform_in_triangle(point[0], point[1]);
     SkyRay out;
-    out.weights = {1 - root, root * (1 - point[1]), root * point[1]};
+    out.weights = {1 - weights.x - weights.y, weights.x, weights.y};
     glm::dvec3 at(0.0);
     glm::dvec3 smooth(0.0);
     const Triangle& t = mesh.triangles[triangle];
@@ -141,11 +137,8 @@ SkySampler::SkyRay SkySampler::ray(const Mesh& mesh, size_t triangle, const Plac
                  : placed.up;
     const double side = back ? -1 : 1;
     normal *= side;
-    const glm::dvec3 u = hemisphere_side(normal);
-    const glm::dvec3 v = glm::cross(normal, u);
-    const double turn = 2 * kPi * (opposite ? point[2] + 0.5 : point[2]);
-    out.direction = std::sqrt(point[3]) * (std::cos(turn) * u + std::sin(turn) * v) +
-                    std::sqrt(1 - point[3]) * normal;
+    out.direction =
+        measure::cosine_direction(normal, point[3], opposite ? point[2] + 0.5 : point[2]);
     out.from = at + side * (above_ + kAboveTriangle * placed.longest) * placed.face;
     out.open = side * glm::dot(out.direction, placed.up) > 0;
     return out;
