@@ -42,8 +42,9 @@ constexpr int kMostHanded = 2;
 // The most lamps.
 // Taste: more take time that no picture is worth.
 constexpr size_t kMostLamps = 20000;
-// The fewest lamps that are named when they cannot be looked through.
-// Taste: fewer take little time.
+// Fewer lamps light everything, if they matter anywhere: no part of a picture can be dark because no
+// point lies on it, and nobody has to look for such parts, which takes most of a plan.
+// Taste: a larger number spares plans, for rays to more lamps at every point.
 constexpr size_t kManyLamps = 8;
 // The most distinct triangles.
 // Taste: each takes 130 bytes while lights are chosen.
@@ -161,12 +162,15 @@ void number_lights(const LightTree& tree, LightPlan& plan) {
     }
 }
 
+/// `grouped`: things may be grouped, where that is worth it.
 LightPlan plan_of(const RegionLights& regions, std::span<const LitPoint> points,
-                  const LightRegions& parts, size_t things) {
-    LightPlan plan = grouped_plan(regions, points, parts);
-    LightPlan single = single_plan(regions, things);
-    if (plan.groups.size() == 1 || !(plan.shadow_rays < kWorth * single.shadow_rays))
-        plan = std::move(single);
+                  const LightRegions& parts, size_t things, bool grouped) {
+    LightPlan plan = single_plan(regions, things);
+    if (grouped) {
+        LightPlan groups = grouped_plan(regions, points, parts);
+        if (groups.groups.size() > 1 && groups.shadow_rays < kWorth * plan.shadow_rays)
+            plan = std::move(groups);
+    }
     number_lights(regions.tree, plan);
     return plan;
 }
@@ -189,8 +193,9 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     if (lamps == 0 || rays_to_all(model.lights, demands.grids.rays) < kFewShadowRays ||
         drawn.empty() || !ray::available())
         return {};
+    const bool many = lamps >= kManyLamps;
     if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
-        if (lamps >= kManyLamps)
+        if (many)
             problems.push_back({"", Severity::Info, "lights_as_they_are",
                                 text("all ", lamps,
                                      " lamps light everything: there are more of them, or of "
@@ -216,10 +221,12 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     }
     const size_t even = grid.points.size();
     scene.add_other_light(demands, grid.points, job);
-    const std::vector<uint8_t> cells =
-        cells_with_lamps(model.lights, view, grid, demands.sky, pixel_error, job);
-    const std::vector<PointSighting> sightings =
-        add_missing_lit_points(scene, view, divisible, cells, grid, job);
+    std::vector<PointSighting> sightings;
+    if (many) {
+        const std::vector<uint8_t> cells =
+            cells_with_lamps(model.lights, view, grid, demands.sky, pixel_error, job);
+        sightings = add_missing_lit_points(scene, view, divisible, cells, grid, job);
+    }
     std::vector<LitPoint>& points = grid.points;
     if (points.empty())
         return {};
@@ -245,7 +252,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
         fit_lamp_grids(tree, cut, points, shares, view, finely, job);
     // Added points look at corners: the mean is that of the evenly spread ones.
     return plan_of({tree, cut, grids}, std::span(points).first(even > 0 ? even : points.size()),
-                   regions, drawn.size());
+                   regions, drawn.size(), many);
 }
 
 }  // namespace lodestone::light

@@ -88,6 +88,7 @@ inline constexpr double kFewShadowRays = 8;
 /// light here and there (the floor of many rooms, a ground) is cut into boxes. With bounces, points
 /// that send light to what the view shows are used, too. A lamp that matters to no point is in no
 /// group.
+/// Fewer than 8 lamps are not grouped: those that matter anywhere light everything.
 ///
 /// Empty if lamps cost few rays, rays cannot be cast, or there is too much to cast them at (a
 /// problem).

@@ -288,7 +288,7 @@ double LitScene::sky_share(const LitPoint& point, size_t number) const {
                                std::numeric_limits<double>::infinity(), blocker))
             ++free;
     }
-    return (free + 0.5) / (kRays + 1);
+    return free / (kRays + 1.0);  // rather too little: more light here leaves out more lamps
 }
 
 void LitScene::add_other_light(const LightDemands& demands, std::span<LitPoint> points,

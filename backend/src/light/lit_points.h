@@ -43,8 +43,7 @@ public:
     void add_other_light(const LightDemands& demands, std::span<LitPoint> points,
                          const Job& job) const;
 
-    /// About the share of the sky that a point sees, weighted by the cosine: never 0, as few rays
-    /// tell it.
+    /// The share of the sky that a point sees, weighted by the cosine, by few rays: rather less.
     double sky_share(const LitPoint& point, size_t number) const;
     /// The share of a light that reaches a point; see-through surfaces hide nothing. `blocker`: see
     /// Reaches.

@@ -21,7 +21,12 @@ constexpr size_t kSplits = 16;
 /// Law: walk() has a stack of 64.
 constexpr int kDeepest = 30;
 
-/// The distance at which a ray enters a box within [0, far]; infinite where it does not.
+/// The end of rays without one: a missed box, which is infinitely far, must lie beyond it.
+/// Law: the largest double.
+constexpr double kFarthest = std::numeric_limits<double>::max();
+
+/// The distance at which a ray enters a box within [0, far]; infinite where it does not. `far` is
+/// finite.
 double entry(const Box3& box, const glm::dvec3& origin, const glm::dvec3& inverse, double far) {
     double near = 0;
     for (int i = 0; i < 3; ++i) {
@@ -191,6 +196,7 @@ void PlacedScenes::walk(const glm::dvec3& origin, const glm::dvec3& direction, d
 
 PlacedScenes::PlacedHit PlacedScenes::first_hit(const glm::dvec3& origin,
                                                 const glm::dvec3& direction, double far) const {
+    far = std::min(far, kFarthest);
     PlacedHit best;
     walk(origin, direction, far, [&](const PlacedScene& placed) {
         const ray::RayHit hit =
@@ -212,6 +218,7 @@ bool PlacedScenes::occluded(const glm::dvec3& origin, const glm::dvec3& directio
 
 bool PlacedScenes::occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                             uint32_t& blocker) const {
+    far = std::min(far, kFarthest);
     const auto blocks = [&](const PlacedScene& placed) {
         return placed.scene->occluded(placed.inverse(origin), placed.inverse.linear * direction,
                                       far);

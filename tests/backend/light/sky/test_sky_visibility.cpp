@@ -166,7 +166,7 @@ TEST_F(SkyVisibility, DoesNotDependOnPlaceTurnAndScale) {
     for (const Affine& all : {moved({1e4, -2e4, 300}), Affine{turn, {1, 2, 3}},
                               Affine{1e-3 * turn, {}}, Affine{1e4 * turn, {5, 5, 5}}}) {
         const SkyShares shares = shares_at(all);
-        EXPECT_NEAR(shares.mean, plain.mean, 0.01);
+        EXPECT_NEAR(shares.mean, plain.mean, 0.02);  // 3 sigma of two sets of 8,000 rays
         ASSERT_EQ(shares.corners.size(), plain.corners.size());
         double difference = 0;
         for (size_t i = 0; i < plain.corners.size(); ++i)
