@@ -59,6 +59,21 @@ class GlowingFaces(unittest.TestCase):
         self.assertEqual(len(lights(row)), 8)
         self.assertEqual(len(lights(Glow((box((1, 1, 1), "z", False),)))), 2)
 
+    def test_lit_windows_of_a_house_are_no_lantern(self):
+        """They became one bulb in the house, which cast no shadow then."""
+        panes = []
+        for side in "xXyY":
+            for along, up in ((-3.0, -3.0), (-3.0, 3.0), (3.0, -3.0), (3.0, 3.0)):
+                part = box((1.0, 1.0, 1.0), side, False)
+                way = 4.5 if side.isupper() else -4.5
+                place = (way, along, up) if side.lower() == "x" else (along, way, up)
+                move = Matrix.Translation(place)
+                moved = tuple(tuple(tuple(move @ p for p in t) for t in s) for s in part.sides)
+                panes.append(Part(KEY, part.radiance, moved, False))
+        found = lights(Glow(tuple(panes)))
+        self.assertEqual({light.kind for light in found}, {native.LightKind.AREA})
+        self.assertEqual(len(found), 32)
+
     def test_a_place_moves_turns_and_scales_lights(self):
         """As if they were fitted there: where all axes are alike that is spared."""
         glow = Glow((box((0.9, 0.5, 0.05)),))

@@ -33,6 +33,7 @@ _ROUND = 0.4  # 36 pi V^2 / A^3: a ball is 1, a cube 0.52
 _ABOVE = 2e-3  # a share of a light's size, from the faces that it stands for
 _LANTERN = 0.5  # the least extent over the largest of what shines alike all around: a cube is 1
 _LANTERN_SIDES = 4  # fewer sides shine into some directions only
+_COVERED = 0.2  # of the box around it shine all sides of a lantern; windows of a house do not
 _ASIDE = 0.3  # in extents: sides this far from the middle keep in what they send to it
 _SIMILAR = 1e-4  # how much the axes of a place may differ in length, and their cosines from 0
 Triangle = tuple[Vector, Vector, Vector]
@@ -251,7 +252,7 @@ def _fitted_parts(glow: Glow, world: Matrix) -> list[tuple[Part, list[native.Lig
 
 def _lantern(sides: list[list[Triangle]]) -> native.Light | None:
     """The light of radiance 1 in the middle of sides that are all around it. None: they are few, or
-    rather in a plane or a row."""
+    rather in a plane or a row, or much else is between them."""
     if len(sides) < _LANTERN_SIDES:
         return None
     triangles = [t for side in sides for t in side]
@@ -266,6 +267,10 @@ def _lantern(sides: list[list[Triangle]]) -> native.Light | None:
                 for k in range(3):
                     moments[i][k] += weight * p[i] * p[k]
     least, largest = _ends(moments)
+    points = [p for triangle in triangles for p in triangle]
+    x, y, z = (max(p[i] for p in points) - min(p[i] for p in points) for i in range(3))
+    if total < _COVERED * 2.0 * (x * y + y * z + z * x):
+        return None
     if not total > 0.0 or not math.isfinite(total) or least < _LANTERN**2 * largest:
         return None
     extent = math.sqrt(largest / total)
