@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards rays through many placements: the same answers as through each of them.
+#include <cmath>
+#include <limits>
+
 #include "base/clock.h"
 #include "base/random.h"
 #include "ray/placed_scenes.h"
@@ -92,7 +95,7 @@ TEST_F(PlacedScenesTest, RaysWithoutAnEndMeetOnlyBoxesOnTheirWay) {
     const Cube one = cube();
     PlacedScenes scenes;
     for (uint32_t i = 0; i < 4096; ++i)
-        scenes.add(one.scene, one.bound, at(3.0 * (i % 64), 3.0 * (i / 64), 0), i);
+        scenes.add(one.scene, one.bound, at(3.0 * (i % 64), 3.0 * std::floor(i / 64.0), 0), i);
     scenes.finish();
     const auto seconds = [&](double far) {
         PcgRandom random(7);
