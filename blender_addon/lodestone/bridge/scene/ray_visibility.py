@@ -23,6 +23,9 @@ SEEN_BY_ALL = {
     "visible_transmission": True,
     "is_shadow_catcher": False,
 }
+# The classes with a switch, and all classes
+_SWITCHED = int(sum(ray_class for _, ray_class in _SWITCHES))
+_ALL = int(sum(RayClass))
 _SEEN = attrgetter(*SEEN_BY_ALL)
 _SEEN_VALUES = tuple(SEEN_BY_ALL.values())
 
@@ -63,7 +66,8 @@ class Visibility:
             self._problems.add(name_of(item), WARNING, "shadow_catcher", text)
         if in_scene and self._in_layer(item, "indirect_only_get"):
             hidden |= RayClass.CAMERA
-        return int(hidden)
+        # Without this, a class without a switch would still see what is hidden from all others.
+        return _ALL if hidden & _SWITCHED == _SWITCHED else int(hidden)
 
     def holdout(self, item: Any, in_scene: bool) -> bool:
         """Whether it cuts a hole into the picture."""

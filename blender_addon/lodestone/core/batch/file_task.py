@@ -25,7 +25,6 @@ from .child_process import CANCELLED, Child
 from .earlier_runs import Found
 from .file_jobs import FileJob
 from .verbs import verb_of
-from .verbs.picture_verb import result_of
 
 CRASH, NOT_BEGUN = "crash", "not_begun"
 PROGRESS = "Lodestone: progress: "
@@ -212,7 +211,7 @@ class FileTask:
                     key=self.job.picture_key(*next(wanted)),
                     inputs=input_stamps.identity(self._inputs),
                     out=out,
-                    outputs=earlier_runs.outputs([result_of(made)]),
+                    outputs=earlier_runs.outputs(verb_of(self.job.verb).results(made)),
                     made=made,
                 )
 

@@ -17,7 +17,7 @@ Rows = tuple[float, ...]  # row-major 3x4
 
 IDENTITY: Rows = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 INSTANCES, HAIR = " instances", " hair"  # appended to an object's name
-ALL_RAYS = 15
+ALL_RAYS = int(sum(native.RayClass))
 NOT_FORCED = -1
 _MOST_NESTED = 64
 
