@@ -154,12 +154,10 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
             slot.material.alpha_mode = AlphaMode::Opaque;
             slot.material.alpha_texture = {};
         }
-        for (const Material* m = &slot.material; m != nullptr; m = m->other.get()) {
+        for (const Material* m = &slot.material; m != nullptr; m = m->other.get())
             slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
-            // Rays through a triangle meet all textures of its corners.
-            slot.even_sky = slot.even_sky || m->alpha_mode != AlphaMode::Opaque;
-        }
         slot.surface.uvs = uvs && textured(slot.material);
+        slot.even_sky = rays_go_on(slot.material, slot.surface.uvs);
         uses_uvs_ = uses_uvs_ || slot.surface.uvs;
         slot.bumped = slot.surface.uvs && bumpy(slot.material);
         slots_.push_back(std::move(slot));

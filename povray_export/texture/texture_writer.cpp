@@ -372,6 +372,19 @@ bool bumpy(const Material& material) {
            (material.other && bumpy(*material.other));
 }
 
+bool rays_go_on(const Material& material, bool uvs) {
+    if (material.alpha_mode != AlphaMode::Opaque || share(material.transmission, 0) > 0)
+        return true;
+    // The smoothest that pictures may make of it, and the most metal, mirrors the most.
+    SurfaceLook look = look_of(material);
+    if (uvs && material.roughness_texture)
+        look.roughness = 0;
+    if (uvs && material.metallic_texture)
+        look.metallic = 1;
+    return finish_of(look).mirror_grazing > 0 ||
+           (material.other && rays_go_on(*material.other, uvs));
+}
+
 double refraction_of(const Material& material) {
     const double other = material.other ? refraction_of(*material.other) : 0;
     if (!(material.transmission > 0) || !std::isfinite(material.ior))

@@ -33,6 +33,10 @@ std::string texture_text(const Material& material, const TexturedSurface& surfac
 /// Whether the material shows more on a flat surface, because it has bumps.
 bool bumpy(const Material& material);
 
+/// Whether rays go on at the surface, mirrored or through it. POV-Ray follows such a ray for each of
+/// the textures of a triangle's corners. `uvs`: pictures are shown.
+bool rays_go_on(const Material& material, bool uvs);
+
 /// The index of refraction of a material that light goes through; 0 for all others.
 double refraction_of(const Material& material);
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards the shade of the sky in POV-Ray's scenes: it is as dark as it must be, costs no rays, and
-// is found once.
+// Guards the shade of the sky in POV-Ray's scenes: it is as dark as it must be, makes no ray go on
+// more than once, and is found once.
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/sky_occlusion.h"
+#include "povray_export/texture/texture_writer.h"
 
+#include <regex>
 #include <set>
 
 using namespace lodestone;
@@ -57,6 +59,13 @@ std::set<std::string> ambients(const std::string& text) {
     return found;
 }
 
+/// The triangles of a text whose corners have textures of their own.
+size_t shaded_triangles(const std::string& text) {
+    static const std::regex kThree(R"(<\d+,\d+,\d+>,\d+,\d+,\d+)");
+    return static_cast<size_t>(
+        std::distance(std::sregex_iterator(text.begin(), text.end(), kThree), {}));
+}
+
 Affine at(double x, double y, double z) {
     return {glm::dmat3(1.0), {x, y, z}};
 }
@@ -102,6 +111,41 @@ TEST_F(SkyOcclusionScenes, WithoutSkyRaysOrASkyTheTextIsAsBefore) {
     builder.model.world.color = glm::dvec3(0.0);
     write("dark", builder.model);
     EXPECT_EQ(includes("dark"), includes("off"));
+}
+
+// Every hit on a smooth floor sent three rays on, and each of these three more.
+TEST_F(SkyOcclusionScenes, WhereRaysGoOnTheCornersOfATriangleShareATexture) {
+    Material rough;
+    rough.roughness = 0.6;
+    Material smooth = rough;
+    smooth.roughness = 0.1;
+    Material metal = rough;
+    metal.metallic = 1;
+    metal.roughness = 0.3;
+    Material glass = rough;
+    glass.transmission = 0.5;
+    Material below;
+    below.roughness = 1;
+    below.other = std::make_shared<const Material>(smooth);
+    below.mix = 0.5;
+    Material pictured = rough;
+    pictured.roughness_texture = scenes::checker(ColorSpace::Linear);
+    const std::vector<uint32_t> materials{builder.material(rough)};
+    builder.place(builder.mesh(shapes::quad(4, 4), materials), at(-2, -2, 0));
+    builder.place(builder.mesh(shapes::box({-1, -1, .2}, {1, 1, 1}), materials));
+    builder.finish();
+    // Without coordinates of textures a picture makes nothing smooth.
+    const std::pair<Material, bool> cases[] = {{rough, false}, {smooth, true}, {metal, true},
+                                               {glass, true},  {below, true},  {pictured, false}};
+    int number = 0;
+    for (const auto& [material, even] : cases) {
+        builder.model.materials.back() = material;
+        const std::string folder = std::to_string(number++);
+        write(folder, builder.model);
+        EXPECT_EQ(shaded_triangles(includes(folder)) == 0, even) << material.roughness;
+        EXPECT_GT(ambients(includes(folder)).size(), 3u);
+    }
+    EXPECT_TRUE(rays_go_on(pictured, true));
 }
 
 TEST_F(SkyOcclusionScenes, WhatGlowsGlowsAsBefore) {
