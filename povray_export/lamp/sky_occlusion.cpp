@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "light/sky/sky_bakes.h"
 #include "povray_export/lamp/placement_grades.h"
+#include "povray_export/scene/invertible_transform.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +52,7 @@ struct SkyThing {
     const Representation* representation = nullptr;
     Affine world;
     uint32_t first = 0;  // of the leaves that are it or below it
+    bool seen = false;   // false: it is drawn as nothing
     bool moves = false;
     bool group = false;  // stands in for a group
 };
@@ -125,7 +127,9 @@ private:
             return true;
         const Representation& finest = here.representations[0];
         if (finest.summary.kind != Kind::Assembly) {
-            leaves_.push_back({object, world, !moves && (hidden & kShadowRays) == 0});
+            SkyLeaf leaf{object, world, !moves && (hidden & kShadowRays) == 0};
+            leaf.hides = make_invertible(leaf.world) && leaf.hides;  // as it is drawn
+            leaves_.push_back(leaf);
             return true;
         }
         if (!finest.resident())
@@ -154,10 +158,11 @@ private:
             SkyThing thing;
             thing.representation = &object.representations.at(node.lod);
             thing.world = cut_.world(node);
+            thing.seen = make_invertible(thing.world);
             thing.moves = moves[index] != 0;
             thing.group = object.group();
             thing.first = static_cast<uint32_t>(leaves_.size());
-            if (!walk(node.object, thing.world, node.hidden, thing.moves))
+            if (!walk(node.object, cut_.world(node), node.hidden, thing.moves))
                 return false;
             things_.push_back(thing);
         }
@@ -191,7 +196,7 @@ private:
     }
 
     bool skipped(const SkyThing& thing) const {
-        return thing.representation->summary.kind == Kind::Assembly || !thing.world.finite();
+        return thing.representation->summary.kind == Kind::Assembly || !thing.seen;
     }
     /// Finds the meshes whose copies all have shares of their own: those of few placements, and
     /// of the others the smallest.
@@ -268,6 +273,12 @@ private:
             find_means(key.first, wanted);
     }
 
+    /// Whether what was kept is the light on this mesh: splits may be those of another one.
+    static bool fits(const Representation& representation, const light::SkyShares& shares) {
+        return representation.resident() &&
+               light::split_for_sky(representation.mesh(), shares).has_value();
+    }
+
     WantedShares* want_shares(const SkyThing& thing, bool once) {
         const Hash key = key_of(*thing.representation, once ? &thing : nullptr);
         const auto [at, fresh] = wanted_shares_.try_emplace(key);
@@ -279,7 +290,7 @@ private:
         if (const auto bytes = bakes_.find(key)) {
             auto found =
                 light::SkyShares::of_bytes(*bytes, thing.representation->summary.cost.triangles);
-            if (found)
+            if (found && fits(*thing.representation, *found))
                 wanted.found = std::make_shared<const light::SkyShares>(std::move(*found));
         }
         if (!wanted.found)
@@ -392,7 +403,8 @@ private:
     void light_all() {
         for (auto& [hash, wanted] : wanted_means_) {
             for (const light::SkyMeans& mean : wanted.found)
-                wanted.ratios.push_back(mean.alone > 0 ? mean.placed / mean.alone : 1);
+                wanted.ratios.push_back(mean.alone > 0 ? limited(mean.placed / mean.alone, 0, 1)
+                                                       : 1);
             wanted.ratios = graded(wanted.ratios);
         }
         lights_.resize(things_.size());

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the shade of the sky in POV-Ray's scenes: it is as dark as it must be, makes no ray go on
 // more than once, and is found once.
+#include "light/sky/sky_bakes.h"
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/texture/texture_writer.h"
 
+#include <cstring>
 #include <regex>
 #include <set>
 
@@ -181,6 +183,36 @@ TEST_F(SkyOcclusionScenes, TheSecondPictureFindsNothingAgain) {
     EXPECT_EQ(second.bytes, first.bytes);
     EXPECT_EQ(second.written, 2u);  // scene.pov and scene.ini
     EXPECT_EQ(std::filesystem::last_write_time(file), std::filesystem::file_time_type{});
+    EXPECT_EQ(includes("scene"), text);
+}
+
+// A file of such bytes made every export fail.
+TEST_F(SkyOcclusionScenes, KeptLightOnAnotherMeshIsFoundAnew) {
+    builder.place(builder.mesh(shapes::quad(4, 4)), at(-2, -2, 0));
+    builder.place(builder.mesh(shapes::cube()), at(0, 0, .2));
+    const Model& model = builder.finish();
+    write("scene", model);
+    const std::string text = includes("scene");
+    const std::filesystem::path file = own_scratch() / "scene" / "sky_light.bin";
+    const std::string bytes = read_file(file);
+    light::SkyBakes bakes(file);
+    // After its magic, each bake is 16 bytes of head, of which the last four are its size.
+    size_t count = 0;
+    for (size_t place = 8; place + 24 < bytes.size(); ++count) {
+        Hash key = 0;
+        uint32_t size = 0;
+        std::memcpy(&key, bytes.data() + place, sizeof key);
+        std::memcpy(&size, bytes.data() + place + 12, sizeof size);
+        place += 16 + size;
+        light::SkyShares other;
+        other.splits = {{geometry::welded_edge(0, 1)}};
+        other.corners.assign(300, 128);
+        bakes.add(key, other.bytes());
+    }
+    EXPECT_EQ(count, 2u);
+    bakes.save();
+    std::filesystem::remove_all(own_scratch() / "scene" / "r");
+    write("scene", model);
     EXPECT_EQ(includes("scene"), text);
 }
 

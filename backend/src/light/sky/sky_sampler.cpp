@@ -27,10 +27,18 @@ constexpr double kAboveTriangle = 1e-4;
 constexpr double kAboveMesh = 4e-6;   // Law: as kAboveTriangle
 constexpr double kAboveScene = 1e-6;  // Law: as kAboveTriangle, of all that hides the sky
 
+/// The map of normals: the transposed inverse, but for its length, where there is one. Under a
+/// placement that flattens all it is that of the flat side.
+glm::dmat3 normal_map_of(const glm::dmat3& linear) {
+    const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                               glm::cross(linear[0], linear[1]));
+    return glm::determinant(linear) < 0 ? -cofactors : cofactors;
+}
+
 }  // namespace
 
 SkySampler::SkySampler(const SkyRequest& request)
-    : request_(request), normal_map_(glm::transpose(glm::inverse(request.world.linear))) {
+    : request_(request), normal_map_(normal_map_of(request.world.linear)) {
     Box3 box;
     for (const glm::vec3& position : request.surface.mesh->positions) {
         if (finite(position))
@@ -38,12 +46,12 @@ SkySampler::SkySampler(const SkyRequest& request)
     }
     size_ = glm::length(box.size());
     to_own_.linear = glm::inverse(request.world.linear);
+    flat_ = !to_own_.finite();
     above_ = kAboveMesh * size_;
     if (request.around != nullptr) {
         enlarged_ = stretch(request.world);
-        above_ = request.error +
-                 std::max(above_,
-                          enlarged_ > 0 ? kAboveScene * request.around->size() / enlarged_ : 0.0);
+        above_ += request.error;
+        above_world_ = kAboveScene * request.around->size();
     }
 }
 
@@ -68,15 +76,14 @@ std::optional<SkySampler::PlacedTriangle> SkySampler::placed(const Mesh& mesh,
     return out;
 }
 
-bool SkySampler::hidden(const glm::dvec3& own, const glm::dvec3& direction,
-                        uint32_t& blocker) const {
+bool SkySampler::hidden(const SkyRay& ray, uint32_t& blocker) const {
     return request_.around != nullptr
-               ? request_.around->hides(request_.world(own), direction, blocker)
-               : hidden_alone(own, direction);
+               ? request_.around->hides(ray.from_world, ray.direction, blocker)
+               : hidden_alone(ray);
 }
 
-bool SkySampler::hidden_alone(const glm::dvec3& own, const glm::dvec3& direction) const {
-    return request_.surface.scene->occluded(own, to_own_.linear * direction);
+bool SkySampler::hidden_alone(const SkyRay& ray) const {
+    return !flat_ && request_.surface.scene->occluded(ray.from, to_own_.linear * ray.direction);
 }
 
 TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) const {
@@ -98,7 +105,7 @@ TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) c
         double seen = 0;
         bool inside = false;
         for (const SkyRay& one : pair) {
-            const bool free = one.open && !hidden(one.from, one.direction, blocker);
+            const bool free = one.open && !hidden(one, blocker);
             seen += free ? 1 : 0;
             inside = inside || (one.open && !free && !both && meets_near_back(one, reach));
         }
@@ -140,6 +147,7 @@ SkySampler::SkyRay SkySampler::ray(const Mesh& mesh, size_t triangle, const Plac
     out.direction =
         measure::cosine_direction(normal, point[3], opposite ? point[2] + 0.5 : point[2]);
     out.from = at + side * (above_ + kAboveTriangle * placed.longest) * placed.face;
+    out.from_world = request_.world(out.from) + side * above_world_ * placed.up;
     out.open = side * glm::dot(out.direction, placed.up) > 0;
     return out;
 }
@@ -161,8 +169,7 @@ void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangl
     uint32_t blocker = ray::PlacedScenes::kNothing;
     for (int i = 0; i < rays; ++i) {
         const SkyRay ray = this->ray(mesh, triangle, placed, static_cast<uint32_t>(i), true);
-        const bool free =
-            ray.open && ray.direction.z > 0 && !hidden(ray.from, ray.direction, blocker);
+        const bool free = ray.open && ray.direction.z > 0 && !hidden(ray, blocker);
         for (size_t corner = 0; corner < 3; ++corner) {
             weights[corner] += ray.weights[corner];
             seen[corner] += free ? ray.weights[corner] : 0;
@@ -177,7 +184,7 @@ void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangl
 bool SkySampler::meets_near_back(const SkyRay& ray, double reach) const {
     const SkyScene::SkyBlock block =
         request_.around != nullptr
-            ? request_.around->first_block(request_.world(ray.from), ray.direction)
+            ? request_.around->first_block(ray.from_world, ray.direction)
             : first_block(request_.surface, ray.from, to_own_.linear * ray.direction);
     return block.back && block.t <= reach;
 }

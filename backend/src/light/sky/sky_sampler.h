@@ -55,21 +55,22 @@ public:
     };
     std::optional<PlacedTriangle> placed(const Mesh& mesh, size_t triangle) const;
 
-    /// Whether the sky is hidden, on a ray from a point of the mesh (own frame, world direction).
-    bool hidden(const glm::dvec3& own, const glm::dvec3& direction, uint32_t& blocker) const;
-    bool hidden_alone(const glm::dvec3& own, const glm::dvec3& direction) const;
-
     TriangleShares shares(const Mesh& mesh, size_t triangle, int rays) const;
 
     /// One ray: from where, whereto, and how near to the corners it begins.
     struct SkyRay {
-        glm::dvec3 from;       // own frame
-        glm::dvec3 direction;  // unit, world
+        glm::dvec3 from;        // own frame
+        glm::dvec3 from_world;  // a little farther from the surface: precision is that of all
+        glm::dvec3 direction;   // unit, world
         std::array<double, 3> weights;
         bool open = false;  // false: it points into the surface
     };
     SkyRay ray(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, uint32_t number,
                bool back, bool opposite = false) const;
+
+    /// Whether the sky is hidden on a ray: by anything, or by the surface itself.
+    bool hidden(const SkyRay& ray, uint32_t& blocker) const;
+    bool hidden_alone(const SkyRay& ray) const;
 
     /// Whether a triangle lies inside of something opaque: many of its rays meet backs.
     bool lies_inside(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed) const;
@@ -89,8 +90,10 @@ private:
     glm::dmat3 normal_map_;
     Affine to_own_;
     double size_ = 0;
-    double above_ = 0;     // where rays begin, own frame
-    double enlarged_ = 1;  // by the placement
+    double above_ = 0;        // where rays begin, own frame
+    double above_world_ = 0;  // and farther, world frame
+    double enlarged_ = 1;     // by the placement
+    bool flat_ = false;       // the placement leaves no body, which hides nothing from itself
     bool closed_ = true;
     measure::SobolPoints points_{7};
 };

@@ -136,7 +136,7 @@ void SkyScene::join(const SkyOccluder& occluder, const SkySurface& surface) {
 }
 
 SkyScene::SkyScene(const Model& model, const SkySurfaces& surfaces,
-                   std::span<const SkyOccluder> occluders, const Job& job)
+                   std::span<const SkyOccluder> occluders, const Job& job, uint64_t most_joined)
     : occluders_(occluders) {
     std::unordered_map<Hash, uint64_t> counts;
     for (const SkyOccluder& occluder : occluders)
@@ -168,7 +168,7 @@ SkyScene::SkyScene(const Model& model, const SkySurfaces& surfaces,
         const bool fits =
             occluder.world.finite() && largest(glm::abs(occluder.world.offset)) < 1e30;
         triangles += surface.mesh->triangles.size();
-        if (fits && triangles <= kMostJoined && (materials_fit || surface.see_through.empty()))
+        if (fits && triangles <= most_joined && (materials_fit || surface.see_through.empty()))
             join(occluder, surface);
         else
             placed_.add(surface.scene, occluder.representation->summary.bound, occluder.world, i);
@@ -191,12 +191,11 @@ SkyScene::SkyBlock SkyScene::first_block(const glm::dvec3& from,
     const ray::PlacedScenes::PlacedHit hit = placed_.first_hit(from, direction, out.t);
     if (!hit.hit)
         return out;
+    // A mirrored placement keeps what is outside outside.
     const SkySurface& surface = *surfaces_[hit.name];
-    const Affine& world = occluders_[hit.name].world;
-    const bool mirrored = glm::determinant(world.linear) < 0;
-    const bool back =
-        meets_back(*surface.mesh, hit.triangle, glm::inverse(world.linear) * direction);
-    return {hit.t, surface.opaque_slot(surface.mesh->slot(hit.triangle)) && back != mirrored};
+    const glm::dvec3 own = glm::inverse(occluders_[hit.name].world.linear) * direction;
+    return {hit.t, surface.opaque_slot(surface.mesh->slot(hit.triangle)) &&
+                       meets_back(*surface.mesh, hit.triangle, own)};
 }
 
 SkyScene::SkyBlock first_block(const SkySurface& surface, const glm::dvec3& from,

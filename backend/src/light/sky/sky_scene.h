@@ -62,9 +62,14 @@ private:
 /// too many triangles.
 class SkyScene {
 public:
+    /// Triangles that are joined at most.
+    /// Taste: a larger value is faster where much is placed often, for 0.2 KB and 1 us a triangle.
+    static constexpr uint64_t kMostJoined = 1'500'000;
+
     /// The representations of all occluders were added to the surfaces. Both outlive the scene.
     SkyScene(const Model& model, const SkySurfaces& surfaces,
-             std::span<const SkyOccluder> occluders, const Job& job);
+             std::span<const SkyOccluder> occluders, const Job& job,
+             uint64_t most_joined = kMostJoined);
 
     /// Whether an occluder hides the sky in a direction. `blocker` begins as
     /// ray::PlacedScenes::kNothing and makes the next call faster.
@@ -81,10 +86,6 @@ public:
     SkyBlock first_block(const glm::dvec3& from, const glm::dvec3& direction) const;
     /// The length of the box around all, by which rays must begin above surfaces.
     double size() const { return size_; }
-
-    /// Triangles that are joined at most.
-    /// Taste: a larger value is faster where much is placed often, for 0.2 KB and 1 us a triangle.
-    static constexpr uint64_t kMostJoined = 1'500'000;
 
 private:
     struct JoinedMesh {

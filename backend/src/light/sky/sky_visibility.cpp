@@ -348,8 +348,8 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         const bool both = !request.surface.opaque_slot(mesh.slot(triangle));
         const SkySampler::SkyRay ray =
             sampler.ray(mesh, triangle, *placed, static_cast<uint32_t>(i), both && i % 2 == 1);
-        const double alone = ray.open && !sampler.hidden_alone(ray.from, ray.direction) ? 1 : 0;
-        const double seen = alone > 0 && !sampler.hidden(ray.from, ray.direction, blocker) ? 1 : 0;
+        const double alone = ray.open && !sampler.hidden_alone(ray) ? 1 : 0;
+        const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
         all.placed += seen;
         all.alone += alone;
         all.rays += 1;
@@ -386,7 +386,10 @@ std::optional<std::vector<SkyMeans>> means_of(std::string_view bytes, size_t cou
     std::vector<SkyMeans> out(count);
     for (size_t i = 0; i < count; ++i) {
         std::memcpy(pair, bytes.data() + i * sizeof pair, sizeof pair);
-        out[i] = {limited(pair[0], 0, 1), limited(pair[1], 0, 1)};
+        // What is around a thing hides more of the sky, never less.
+        if (!(pair[0] >= 0 && pair[0] <= pair[1] && pair[1] <= 1))
+            return {};
+        out[i] = {pair[0], pair[1]};
     }
     return out;
 }

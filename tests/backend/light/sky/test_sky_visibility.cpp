@@ -282,6 +282,32 @@ TEST_F(SkyVisibility, StrangeMeshesAreSurvived) {
     EXPECT_EQ(shares_of_first({{object, {glm::dmat3(0.0), {}}}}, 10).corners.size(), 36u);
 }
 
+// The normals of what is flattened were not numbers, so that it was as light as in the open.
+TEST_F(SkyVisibility, OfAFlattenedBoxBesideAWallIsAHalf) {
+    const ObjectIndex box = builder.mesh(shapes::cube());
+    const ObjectIndex wall = builder.mesh(shapes::box({0, -5000, -5000}, {1, 5000, 5000}));
+    const Affine flat{glm::dmat3(glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0.0)),
+                      {-1.5, 0, 0}};
+    const SkyShares shares = shares_of_first({{box, flat}, {wall, {}}});
+    EXPECT_NEAR(shares.mean, 0.5, 0.05);
+    const SkyMeans means = means_of_first({{box, flat}, {wall, {}}});
+    EXPECT_NEAR(means.placed, 0.5, 0.05);
+    EXPECT_EQ(means.alone, 1);
+}
+
+TEST_F(SkyVisibility, MeansThatCannotBeAreRefused) {
+    const std::vector<SkyMeans> good = {{0.25, 0.5}, {1, 1}, {0, 0}};
+    const auto back = means_of(bytes_of(good), 3);
+    ASSERT_TRUE(back);
+    EXPECT_EQ((*back)[0].placed, 0.25);
+    EXPECT_EQ((*back)[0].alone, 0.5);
+    EXPECT_FALSE(means_of(bytes_of(good), 2));
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const SkyMeans bad :
+         {SkyMeans{nan, 1}, {0, nan}, {1, 1e-30}, {0.5, 2}, {-0.5, 1}, {kInfinity, kInfinity}})
+        EXPECT_FALSE(means_of(bytes_of({bad}), 1)) << bad.placed << ' ' << bad.alone;
+}
+
 TEST_F(SkyVisibility, SharesComeBackFromBytesAndDamagedOnesAreRefused) {
     const ObjectIndex ground = builder.mesh(shapes::quad(40, 40));
     const ObjectIndex house = builder.mesh(shapes::box({18, 18, -1}, {22, 22, 6}));
