@@ -24,8 +24,10 @@ constexpr uint32_t kParts = 8;
 // Where a ray begins, above its triangle, in parts of the triangle's longest edge and of the mesh.
 // Law: rays have single precision (6e-8 of the mesh); this is a large margin.
 constexpr double kAboveTriangle = 1e-4;
-constexpr double kAboveMesh = 4e-6;   // Law: as kAboveTriangle
-constexpr double kAboveScene = 1e-6;  // Law: as kAboveTriangle, of all that hides the sky
+constexpr double kAboveMesh = 4e-6;  // Law: as kAboveTriangle
+// And in parts of how far the thing is from where the coordinates of all that hides the sky begin.
+// Law: eight times the rounding of single precision; a ray and what it meets are rounded once each.
+constexpr double kAboveRounding = 4.8e-7;
 
 /// The map of normals: the transposed inverse, but for its length, where there is one. Under a
 /// placement that flattens all it is that of the flat side.
@@ -51,7 +53,14 @@ SkySampler::SkySampler(const SkyRequest& request)
     if (request.around != nullptr) {
         enlarged_ = stretch(request.world);
         above_ += request.error;
-        above_world_ = kAboveScene * request.around->size();
+        Bound bound;
+        bound.box = box;
+        const Box3 placed = transformed(bound, request.world).box;
+        const glm::dvec3& origin = request.around->origin();
+        const double away =
+            glm::length(glm::max(glm::abs(placed.low - origin), glm::abs(placed.high - origin)));
+        if (!placed.empty() && std::isfinite(away))
+            above_world_ = kAboveRounding * away;
     }
 }
 

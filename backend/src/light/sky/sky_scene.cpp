@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -119,7 +120,7 @@ void SkyScene::join(const SkyOccluder& occluder, const SkySurface& surface) {
                 if (numbers[vertex] == ~uint32_t{0}) {
                     numbers[vertex] = static_cast<uint32_t>(all.positions.size());
                     all.positions.emplace_back(occluder.world(glm::dvec3(mesh.positions[vertex])) -
-                                               center_);
+                                               origin_);
                     if (clear) {
                         all.uvs.push_back(mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[vertex]);
                         all.colors.push_back(mesh.colors.empty() ? glm::vec4(1.0f)
@@ -144,18 +145,26 @@ SkyScene::SkyScene(const Model& model, const SkySurfaces& surfaces,
     // Meshes that are placed seldom are joined first.
     std::vector<std::pair<uint64_t, uint32_t>> order;
     order.reserve(occluders.size());
-    Box3 box;
+    std::array<std::vector<double>, 3> centers;
     for (uint32_t i = 0; i < occluders.size(); ++i) {
         const RepresentationSummary& summary = occluders[i].representation->summary;
         surfaces_.push_back(&surfaces.of(*occluders[i].representation));
         order.emplace_back(counts[summary.hash], i);
-        if (!summary.bound.empty() && occluders[i].world.finite())
-            box.add(transformed(summary.bound, occluders[i].world).box);
+        if (summary.bound.empty() || !occluders[i].world.finite())
+            continue;
+        const glm::dvec3 center = transformed(summary.bound, occluders[i].world).box.center();
+        for (int axis = 0; axis < 3 && finite(center); ++axis)
+            centers[static_cast<size_t>(axis)].push_back(center[axis]);
     }
     std::sort(order.begin(), order.end());
-    size_ = glm::length(box.size());
-    if (!box.empty() && std::isfinite(size_))
-        center_ = box.center();
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<double>& all = centers[static_cast<size_t>(axis)];
+        if (all.empty())
+            continue;
+        const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+        std::nth_element(all.begin(), middle, all.end());
+        origin_[axis] = *middle;
+    }
     uint64_t triangles = 0;
     // Slots have 16 bits.
     const bool materials_fit = model.materials.size() < 0xffffu;
@@ -184,7 +193,7 @@ SkyScene::SkyBlock SkyScene::first_block(const glm::dvec3& from,
                                          const glm::dvec3& direction) const {
     SkyBlock out;
     if (opaque_.scene) {
-        const ray::RayHit hit = opaque_.scene->first_hit(from - center_, direction);
+        const ray::RayHit hit = opaque_.scene->first_hit(from - origin_, direction);
         if (hit.hit)
             out = {hit.t, meets_back(opaque_.mesh, hit.triangle, direction)};
     }

@@ -74,7 +74,7 @@ public:
     /// Whether an occluder hides the sky in a direction. `blocker` begins as
     /// ray::PlacedScenes::kNothing and makes the next call faster.
     bool hides(const glm::dvec3& from, const glm::dvec3& direction, uint32_t& blocker) const {
-        const glm::dvec3 near = from - center_;
+        const glm::dvec3 near = from - origin_;
         return opaque_.hides(near, direction) || clear_.hides(near, direction) ||
                placed_.occluded(from, direction, kInfinity, blocker);
     }
@@ -84,8 +84,9 @@ public:
         bool back = false;
     };
     SkyBlock first_block(const glm::dvec3& from, const glm::dvec3& direction) const;
-    /// The length of the box around all, by which rays must begin above surfaces.
-    double size() const { return size_; }
+    /// The origin of coordinates of single precision: rays must begin above surfaces by their
+    /// rounding. It lies amid most things, so that a huge one does not make it coarser for others.
+    const glm::dvec3& origin() const { return origin_; }
 
 private:
     struct JoinedMesh {
@@ -102,8 +103,7 @@ private:
     JoinedMesh opaque_;
     JoinedMesh clear_;
     ray::PlacedScenes placed_;
-    glm::dvec3 center_{0.0};  // the origin of the joined meshes, which have single precision
-    double size_ = 0;
+    glm::dvec3 origin_{0.0};  // of the joined meshes
 };
 
 /// The first opaque thing of a surface in a direction, in its frame.

@@ -177,6 +177,34 @@ TEST_F(SkyVisibility, DoesNotDependOnPlaceTurnAndScale) {
     }
 }
 
+// Rays began a millionth of the whole scene above everything: 60 mm here, above the shelf.
+TEST_F(SkyVisibility, AFarThingErasesNoContactShade) {
+    const ObjectIndex floor = builder.mesh(shapes::quad(1, 1));
+    const ObjectIndex shelf = builder.mesh(shapes::box({-1, -1, .005}, {2, 2, .02}));
+    const ObjectIndex far = builder.mesh(shapes::cube());
+    const std::vector<std::pair<ObjectIndex, Affine>> near = {{floor, {}}, {shelf, {}}};
+    auto all = near;
+    all.emplace_back(far, moved({6e4, 0, 0}));
+    EXPECT_LT(shares_of_first(near).mean, 0.01);
+    EXPECT_NEAR(shares_of_first(all).mean, shares_of_first(near).mean, 1e-3);
+    EXPECT_NEAR(means_of_first(all).placed, means_of_first(near).placed, 1e-3);
+}
+
+TEST_F(SkyVisibility, RoundingFarAwayHidesNothing) {
+    const ObjectIndex floor = builder.mesh(shapes::quad(1, 1));
+    const ObjectIndex here = builder.mesh(shapes::cube());
+    for (const double away : {1e2, 1e4, 1e6}) {
+        for (int i = 0; i < 8; ++i) {
+            const glm::dmat3 turn(
+                glm::rotate(glm::dmat4(1.0), 0.7 * i, glm::normalize(glm::dvec3(1, i, 3))));
+            const SkyShares shares = shares_of_first({{floor, {turn, {away, away / 3, away / 7}}},
+                                                      {here, moved({0, 0, -9})},
+                                                      {here, moved({0, 0, -5})}});
+            EXPECT_GT(shares.mean, 0.999) << away << ' ' << i;
+        }
+    }
+}
+
 TEST_F(SkyVisibility, IsTheSameOnAnyNumberOfThreads) {
     const ObjectIndex ground = builder.mesh(shapes::terrain(24));
     const ObjectIndex box = builder.mesh(shapes::box({.4, .4, -1}, {.6, .6, 1}));
