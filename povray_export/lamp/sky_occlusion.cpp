@@ -17,7 +17,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 1;
+constexpr uint32_t kBakeVersion = 2;
 // The triangles of copies, beyond kPlacementGrades of a mesh, that have shares of their own: a share
 // of those of all distinct meshes, and some more.
 // Taste: a larger value shades small things more truly, for a copy of the mesh each.
@@ -238,9 +238,11 @@ private:
 
     Hash key_of(const Representation& representation, const SkyThing* placed) const {
         Hasher hasher;
-        hasher.value(kBakeVersion).value(options_.rays).value(representation.summary.hash);
+        const RepresentationSummary& summary = representation.summary;
+        hasher.value(kBakeVersion).value(options_.rays).value(summary.hash);
+        hasher.value(summary.cost.triangles);
         if (placed != nullptr) {
-            hasher.value(scene_hash_);
+            hasher.value(scene_hash_).value(summary.max_error).value(splits_of(*placed));
             hash_transform(hasher, placed->world);
         }
         return hasher.result();
@@ -326,9 +328,16 @@ private:
         return numbers_[leaf];
     }
 
+    /// The rays that tell what is around one placement: as many whatever is known already.
+    int mean_rays() const {
+        return static_cast<int>(limited(kMostMeanRays / static_cast<double>(leaves_.size() + 1),
+                                        kFewestMeanRays, kMeanRays));
+    }
+
     void find_means(Hash hash, WantedMeans& wanted) {
         Hasher hasher;
         hasher.value(scene_hash_).value(hash).value(wanted.places.size());
+        hasher.value(mean_rays()).value(wanted.representation->summary.max_error);
         for (const Affine& world : wanted.places)
             hash_transform(hasher, world);
         wanted.key = hasher.result();
@@ -371,12 +380,7 @@ private:
             }
             wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
         });
-        size_t places = 0;
-        for (const WantedMeans* wanted : missing_means_)
-            places += wanted->places.size();
-        const int rays =
-            std::clamp(static_cast<int>(kMostMeanRays / static_cast<double>(places + 1)),
-                       kFewestMeanRays, kMeanRays);
+        const int rays = mean_rays();
         for (WantedMeans* wanted : missing_means_) {
             wanted->found.resize(wanted->places.size());
             const light::SkySurface& surface = surfaces.of(*wanted->representation);

@@ -22,6 +22,7 @@ protected:
         std::string reason;
         if (!ray::available(&reason))
             GTEST_SKIP() << reason;
+        std::filesystem::remove_all(own_scratch());  // with what an earlier run kept
         builder.model.world.color = glm::dvec3(0.5);
     }
 
@@ -66,6 +67,20 @@ size_t shaded_triangles(const std::string& text) {
     static const std::regex kThree(R"(<\d+,\d+,\d+>,\d+,\d+,\d+)");
     return static_cast<size_t>(
         std::distance(std::sregex_iterator(text.begin(), text.end(), kThree), {}));
+}
+
+/// The keys of a file of bakes, and the size of each one's bytes.
+std::vector<std::pair<Hash, uint32_t>> kept_bakes(const std::filesystem::path& file) {
+    const std::string bytes = read_file(file);
+    std::vector<std::pair<Hash, uint32_t>> out;
+    // After its magic, each bake is 16 bytes of head, of which the last four are its size.
+    for (size_t place = 8; place + 24 <= bytes.size();) {
+        auto& [key, size] = out.emplace_back();
+        std::memcpy(&key, bytes.data() + place, sizeof key);
+        std::memcpy(&size, bytes.data() + place + 12, sizeof size);
+        place += 16 + size;
+    }
+    return out;
 }
 
 Affine at(double x, double y, double z) {
@@ -194,22 +209,15 @@ TEST_F(SkyOcclusionScenes, KeptLightOnAnotherMeshIsFoundAnew) {
     write("scene", model);
     const std::string text = includes("scene");
     const std::filesystem::path file = own_scratch() / "scene" / "sky_light.bin";
-    const std::string bytes = read_file(file);
+    const std::vector<std::pair<Hash, uint32_t>> kept = kept_bakes(file);
     light::SkyBakes bakes(file);
-    // After its magic, each bake is 16 bytes of head, of which the last four are its size.
-    size_t count = 0;
-    for (size_t place = 8; place + 24 < bytes.size(); ++count) {
-        Hash key = 0;
-        uint32_t size = 0;
-        std::memcpy(&key, bytes.data() + place, sizeof key);
-        std::memcpy(&size, bytes.data() + place + 12, sizeof size);
-        place += 16 + size;
+    for (const auto& [key, size] : kept) {
         light::SkyShares other;
         other.splits = {{geometry::welded_edge(0, 1)}};
         other.corners.assign(300, 128);
         bakes.add(key, other.bytes());
     }
-    EXPECT_EQ(count, 2u);
+    EXPECT_EQ(kept.size(), 2u);
     bakes.save();
     std::filesystem::remove_all(own_scratch() / "scene" / "r");
     write("scene", model);
@@ -243,6 +251,46 @@ TEST_F(SkyOcclusionScenes, ManyCopiesHaveAtMostFourGrades) {
     EXPECT_GE(report.sky_copies, 1u);
     EXPECT_LE(report.sky_copies, 3u);
     EXPECT_EQ(report.representations, 2 + report.sky_copies);
+}
+
+// The rays of each were as many as what was not known yet left time for.
+TEST_F(SkyOcclusionScenes, TheLightOnCopiesDoesNotDependOnWhatIsKept) {
+    const ObjectIndex things[] = {builder.mesh(shapes::quad(1, 1)),
+                                  builder.mesh(shapes::quad(2, 1))};
+    builder.place(builder.mesh(shapes::box({-20, -20, 2}, {20, 20, 3})));
+    const int copies = 4500;
+    for (const ObjectIndex thing : things) {
+        for (int i = 0; i < copies; ++i)
+            builder.place(thing, at(i % 67, i / 67 * 0.7, 0.001 * i));
+    }
+    write("scene", builder.finish());
+    const std::filesystem::path file = own_scratch() / "scene" / "sky_light.bin";
+    light::SkyBakes all(file);
+    light::SkyBakes some(own_scratch() / "some" / "sky_light.bin");
+    int means = 0;
+    for (const auto& [key, size] : kept_bakes(file)) {
+        // A mean is two numbers of four bytes; those of one thing are left out.
+        if (size != 8 * copies || ++means > 1)
+            some.add(key, std::string(*all.find(key)));
+    }
+    EXPECT_EQ(means, 2);
+    some.save();
+    write("some", builder.model);
+    EXPECT_EQ(includes("some"), includes("scene"));
+}
+
+// Splits follow all that is there, and what was kept those of another scene.
+TEST_F(SkyOcclusionScenes, SharesOfOtherSplitsAreNotTaken) {
+    builder.place(builder.mesh(shapes::quad(40, 40)), at(-20, -20, 0));
+    builder.place(builder.mesh(shapes::box({-1, -1, -1}, {1, 1, 9})));
+    write("scene", builder.finish());
+    const ObjectIndex moving = builder.mesh(shapes::torus(64, 64));
+    builder.model.objects[moving].deforms = true;
+    builder.place(moving, at(0, 0, 90));
+    builder.finish();
+    write("scene", builder.model);
+    write("fresh", builder.model);
+    EXPECT_EQ(includes("scene"), includes("fresh"));
 }
 
 TEST_F(SkyOcclusionScenes, ALargeStreetIsNotLookedThroughForMinutes) {

@@ -346,8 +346,10 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         if (!placed)
             continue;
         const bool both = !request.surface.opaque_slot(mesh.slot(triangle));
-        const SkySampler::SkyRay ray =
-            sampler.ray(mesh, triangle, *placed, static_cast<uint32_t>(i), both && i % 2 == 1);
+        // Every second point of the sequence lies in one half of each of its axes: both sides have
+        // all points.
+        const SkySampler::SkyRay ray = sampler.ray(
+            mesh, triangle, *placed, static_cast<uint32_t>(both ? i / 2 : i), both && i % 2 == 1);
         const double alone = ray.open && !sampler.hidden_alone(ray) ? 1 : 0;
         const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
         all.placed += seen;

@@ -310,6 +310,22 @@ TEST_F(SkyVisibility, StrangeMeshesAreSurvived) {
     EXPECT_EQ(shares_of_first({{object, {glm::dmat3(0.0), {}}}}, 10).corners.size(), 36u);
 }
 
+// Rays to one side of a leaf all went one way.
+TEST_F(SkyVisibility, EachSideOfALeafLooksAllAround) {
+    Material clear;
+    clear.alpha = 0.99;
+    clear.alpha_mode = AlphaMode::Blend;
+    const ObjectIndex leaf = builder.mesh(shapes::quad(1, 1), {builder.material(clear)});
+    // A high wall on each side in turn, which hides a half from above and nothing from below.
+    const ObjectIndex wall = builder.mesh(shapes::box({1, -5000, 0}, {2, 5000, 5000}));
+    for (int side = 0; side < 4; ++side) {
+        const glm::dmat3 turn(glm::rotate(glm::dmat4(1.0), side * kPi / 2, glm::dvec3(0, 0, 1)));
+        const SkyMeans means =
+            means_of_first({{leaf, moved({-.5, -.5, 0})}, {wall, {turn, {0, 0, 0}}}});
+        EXPECT_NEAR(means.placed, 0.75, 0.02) << side;
+    }
+}
+
 // The normals of what is flattened were not numbers, so that it was as light as in the open.
 TEST_F(SkyVisibility, OfAFlattenedBoxBesideAWallIsAHalf) {
     const ObjectIndex box = builder.mesh(shapes::cube());
