@@ -195,6 +195,11 @@ private:
         return model_.objects[leaf.object].representations[0];
     }
 
+    /// The finest level of what a thing is, or the stand-in that it is.
+    const Representation& finest_of(const SkyThing& thing) const {
+        return thing.group ? *thing.representation : finest_of(leaves_[thing.first]);
+    }
+
     bool skipped(const SkyThing& thing) const {
         return thing.representation->summary.kind == Kind::Assembly || !thing.seen;
     }
@@ -304,8 +309,7 @@ private:
     /// which of them the cut draws; those of a stand-in are of the cut's.
     void want_means(size_t i) {
         const SkyThing& thing = things_[i];
-        const Representation& representation =
-            thing.group ? *thing.representation : finest_of(leaves_[thing.first]);
+        const Representation& representation = finest_of(thing);
         WantedMeans& wanted = wanted_means_[{representation.summary.hash, thing.group}];
         wanted.representation = &representation;
         if (thing.group) {
@@ -430,6 +434,26 @@ private:
             if (means == nullptr)
                 means_[i] = light->shares->mean;
             lights_[i] = std::move(light);
+        }
+        grade_means();
+    }
+
+    /// Other levels have one factor each: those of one finest level are graded, as its copies are.
+    void grade_means() {
+        std::unordered_map<Hash, std::vector<size_t>> alike;
+        for (size_t i = 0; i < things_.size(); ++i) {
+            const SkyThing& thing = things_[i];
+            if (!skipped(thing))
+                alike[finest_of(thing).summary.hash].push_back(i);
+        }
+        for (const auto& [hash, numbers] : alike) {
+            std::vector<double> means;
+            means.reserve(numbers.size());
+            for (const size_t i : numbers)
+                means.push_back(means_[i]);
+            means = graded(means);
+            for (size_t i = 0; i < numbers.size(); ++i)
+                means_[numbers[i]] = means[i];
         }
     }
 

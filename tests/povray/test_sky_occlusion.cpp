@@ -3,6 +3,7 @@
 // more than once, and is found once.
 #include "light/sky/sky_bakes.h"
 #include "povray/povray_scenes.h"
+#include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/texture/texture_writer.h"
 
@@ -251,6 +252,24 @@ TEST_F(SkyOcclusionScenes, ManyCopiesHaveAtMostFourGrades) {
     EXPECT_GE(report.sky_copies, 1u);
     EXPECT_LE(report.sky_copies, 3u);
     EXPECT_EQ(report.representations, 2 + report.sky_copies);
+}
+
+// Levels for classes of rays had a file for each of up to 257 factors.
+TEST_F(SkyOcclusionScenes, OtherLevelsOfCopiesHaveFewFactors) {
+    const ObjectIndex ball = builder.mesh(shapes::sphere(1, 1));
+    builder.place(builder.mesh(shapes::box({-20, -20, 2}, {20, 20, 3})));
+    for (int i = 0; i < 60; ++i)
+        builder.place(ball, at(i * 0.7, 0, 0));
+    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+    Problems problems;
+    const SkyOcclusion light(builder.model, cut, {}, problems, {});
+    std::set<Hash> hashes;
+    for (const uint32_t node : cut.chosen) {
+        ASSERT_TRUE(light.mean_of_node(node));
+        hashes.insert(light.mean_of_node(node)->hash);
+    }
+    EXPECT_GE(hashes.size(), 3u);
+    EXPECT_LE(hashes.size(), 1u + kPlacementGrades);
 }
 
 // The rays of each were as many as what was not known yet left time for.
