@@ -26,9 +26,17 @@ bool lets_light_through(const Material& material) {
            (material.other && lets_light_through(*material.other));
 }
 
-/// The material with what it transmits as a part of its alpha: rays go through glass.
+/// What of a material rays to the sky meet, with what it transmits as a part of its alpha: rays go
+/// through glass. It has no other pictures, which would be decoded.
 Material clear_material(const Material& material) {
-    Material out = material;
+    Material out;
+    if (!lets_light_through(material))
+        return out;
+    out.alpha_mode = material.alpha_mode;
+    out.alpha = material.alpha;
+    out.alpha_texture = material.alpha_texture;
+    out.alpha_cutoff = material.alpha_cutoff;
+    out.vertex_colors = material.vertex_colors;
     const double through = transmitted(material);
     if (through > 0) {
         if (material.alpha_mode == AlphaMode::Opaque) {
@@ -45,8 +53,11 @@ Material clear_material(const Material& material) {
             out.alpha_texture = {};
         }
     }
-    if (material.other)
+    if (material.other) {
+        out.mix = material.mix;
+        out.mix_texture = material.mix_texture;
         out.other = std::make_shared<const Material>(clear_material(*material.other));
+    }
     return out;
 }
 

@@ -61,6 +61,29 @@ TEST_F(SkyScenes, TheNearestThingIsMet) {
         EXPECT_EQ(block.t, kInfinity);
 }
 
+// Every picture of the model was decoded where one material had a mask.
+TEST_F(SkyScenes, PicturesOfWhatIsOpaqueAreNotDecoded) {
+    Texture damaged;
+    Picture picture;
+    picture.width = picture.height = 4;
+    picture.bytes = "no picture";
+    damaged.picture = std::make_shared<const Picture>(picture);
+    Material wall;
+    wall.base_color_texture = damaged;
+    wall.roughness_texture = damaged;
+    Material leaf = wall;
+    leaf.alpha_mode = AlphaMode::Clip;
+    leaf.alpha = 0.2;
+    Mesh card = shapes::quad(4, 4);
+    card.uvs.assign(card.positions.size(), glm::vec2(0.5f));
+    card.slots = {0, 1};
+    const ObjectIndex sheet = builder.mesh(card, {builder.material(wall), builder.material(leaf)});
+    for (const SkyScene::SkyBlock& block : blocks({{sheet, {}}}, {3, 1, -1}, {0, 0, 1}))
+        EXPECT_NEAR(block.t, 1, 1e-6);
+    for (const SkyScene::SkyBlock& block : blocks({{sheet, {}}}, {1, 3, -1}, {0, 0, 1}))
+        EXPECT_EQ(block.t, kInfinity);
+}
+
 // What stood beside a mirrored thing that was not joined counted as inside of it.
 TEST_F(SkyScenes, AMirroredThingHasItsFrontsOutside) {
     const ObjectIndex box = builder.mesh(shapes::box({-1, -1, -1}, {1, 1, 1}));
