@@ -7,6 +7,7 @@
 #include "povray_export/scene/invertible_transform.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -87,16 +88,17 @@ public:
             return "There is too much in the scene to find what hides the sky";
         find_keys();
         std::string reason;
-        if (!missing_.empty() || !missing_means_.empty()) {
+        if (baked()) {
             if (!ray::available(&reason))
                 return "What hides the sky is not found: " + reason;
             bake();
-            bakes_.save();
         }
         light_all();
         return "";
     }
 
+    /// Whether anything had to be found.
+    bool baked() const { return !missing_.empty() || !missing_means_.empty(); }
     std::vector<SkyLightPtr> lights() { return std::move(lights_); }
     SkyLightPtr mean_of(size_t position) const {
         return position < means_.size() ? factor_light(means_[position]) : nullptr;
@@ -119,7 +121,11 @@ private:
     };
 
     bool walk(ObjectIndex object, const Affine& world, RayMask hidden, bool moves) {
-        if (object >= model_.objects.size() || leaves_.size() >= kMostLeaves)
+        // Groups that place nothing, twice in each other over and over, have no leaves.
+        if ((++visits_ & 1023u) == 0)
+            job_.check();
+        if (object >= model_.objects.size() || visits_ > 2 * kMostLeaves ||
+            leaves_.size() >= kMostLeaves)
             return false;
         const Object& here = model_.objects[object];
         moves = moves || here.deforms;
@@ -282,7 +288,9 @@ private:
 
     /// Whether what was kept is the light on this mesh: splits may be those of another one.
     static bool fits(const Representation& representation, const light::SkyShares& shares) {
-        return representation.resident() &&
+        if (!representation.resident())
+            return false;
+        return light::whole(representation.mesh(), shares) ||
                light::split_for_sky(representation.mesh(), shares).has_value();
     }
 
@@ -372,7 +380,49 @@ private:
         light::SkySurfaces surfaces(model_);
         surfaces.add(all, job_);
         const light::SkyScene scene(model_, surfaces, occluders, job_);
+        BakeProgress progress(job_, work_of_bake());
+        try {
+            bake_shares(surfaces, scene, progress);
+            bake_means(surfaces, scene, progress);
+        } catch (const Error&) {
+            keep();  // what is finished is not found again
+            throw;
+        }
+        keep();
+    }
+
+    /// The bar of a bake, which may be moved from any thread.
+    class BakeProgress {
+    public:
+        BakeProgress(const Job& job, uint64_t all) : job_(job), all_(all) {}
+        void add(uint64_t work) {
+            const uint64_t done = done_ += work;
+            job_.progress(static_cast<double>(done) / static_cast<double>(all_));
+        }
+
+    private:
+        const Job& job_;
+        uint64_t all_;
+        std::atomic<uint64_t> done_{0};
+    };
+
+    /// The rays of a bake, about: two triangles have about one corner.
+    static uint64_t work_of(const WantedShares& wanted, int rays) {
+        return 1 + static_cast<uint64_t>(rays) * wanted.representation->summary.cost.triangles / 2;
+    }
+    uint64_t work_of_bake() const {
+        uint64_t work = 1;
+        for (const auto& [key, wanted] : missing_)
+            work += work_of(*wanted, options_.rays);
+        for (const WantedMeans* wanted : missing_means_)
+            work += wanted->places.size() * static_cast<uint64_t>(mean_rays());
+        return work;
+    }
+
+    void bake_shares(const light::SkySurfaces& surfaces, const light::SkyScene& scene,
+                     BakeProgress& progress) {
         parallel_for(missing_.size(), [&](size_t i) {
+            job_.check();
             WantedShares& wanted = *missing_[i].second;
             light::SkyRequest request{
                 surfaces.of(*wanted.representation), {}, nullptr, 0, options_.rays, 0};
@@ -383,22 +433,38 @@ private:
                 request.splits = splits_of(*wanted.placed);
             }
             wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
+            progress.add(work_of(wanted, options_.rays));
         });
+    }
+
+    void bake_means(const light::SkySurfaces& surfaces, const light::SkyScene& scene,
+                    BakeProgress& progress) {
         const int rays = mean_rays();
         for (WantedMeans* wanted : missing_means_) {
-            wanted->found.resize(wanted->places.size());
+            std::vector<light::SkyMeans> found(wanted->places.size());
             const light::SkySurface& surface = surfaces.of(*wanted->representation);
-            parallel_for(wanted->places.size(), [&](size_t i) {
+            parallel_for(found.size(), [&](size_t i) {
                 job_.check();
                 const light::SkyRequest request{surface, wanted->places[i], &scene,
                                                 wanted->representation->summary.max_error, rays};
-                wanted->found[i] = mean_sky_shares(request, rays);
+                found[i] = mean_sky_shares(request, rays);
+                progress.add(static_cast<uint64_t>(rays));
             });
+            wanted->found = std::move(found);
         }
-        for (const auto& [key, wanted] : missing_)
-            bakes_.add(key, wanted->found->bytes());
-        for (const WantedMeans* wanted : missing_means_)
-            bakes_.add(wanted->key, light::bytes_of(wanted->found));
+    }
+
+    /// Keeps what was found now.
+    void keep() {
+        for (const auto& [key, wanted] : missing_) {
+            if (wanted->found)
+                bakes_.add(key, wanted->found->bytes());
+        }
+        for (const WantedMeans* wanted : missing_means_) {
+            if (!wanted->found.empty())
+                bakes_.add(wanted->key, light::bytes_of(wanted->found));
+        }
+        bakes_.save();
     }
 
     static SkyLightPtr factor_light(double factor) {
@@ -468,7 +534,8 @@ private:
     std::unordered_map<Hash, uint32_t> stand_ins_;  // things by stand-in
     uint32_t hiding_ = 0;
     uint64_t triangles_ = 0;  // of all distinct finest levels
-    double sizes_ = 0;        // radii of all that hides the sky
+    size_t visits_ = 0;
+    double sizes_ = 0;  // radii of all that hides the sky
     Hash scene_hash_ = 0;
     std::vector<uint32_t> numbers_;  // by leaf
     std::map<Hash, WantedShares> wanted_shares_;
@@ -506,6 +573,7 @@ SkyOcclusion::SkyOcclusion(const Model& model, const choose::Cut& cut,
     std::string reason;
     try {
         reason = planner.run();
+        baked_ = planner.baked();
     } catch (const Error& error) {
         if (error.status == Status::Cancelled)
             throw;

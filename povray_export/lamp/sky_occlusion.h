@@ -55,10 +55,13 @@ public:
 
     /// The light on a choice of the cut; null: all of it.
     SkyLightPtr of(size_t position) const { return lights_[position]; }
+    /// Whether rays were cast, so that time has passed.
+    bool baked() const { return baked_; }
     /// The same for another level of that node: one factor for all of it.
     SkyLightPtr mean_of_node(uint32_t node) const;
 
 private:
+    bool baked_ = false;
     std::vector<SkyLightPtr> lights_;                      // by position in cut.chosen
     std::vector<std::pair<uint32_t, SkyLightPtr>> means_;  // by node, rising
 };

@@ -68,7 +68,7 @@ public:
         check(mesh);
         if (!options_.textures)
             return mesh_text(mesh, nullptr, identifier_, job_);
-        if (options_.sky && options_.sky->shares) {
+        if (options_.sky && options_.sky->shares && !light::whole(mesh, *options_.sky->shares)) {
             // The triangles are split where the sky's light on them varies.
             auto split = light::split_for_sky(mesh, *options_.sky->shares);
             if (!split)

@@ -40,6 +40,10 @@ constexpr size_t kTypicalObject = 192;
 /// Taste: antialiasing tells no less; a larger value draws leaves far away with fewer corners.
 constexpr double kUnseen = 0.25;
 
+/// The share of the progress bar for the sky's light, where it is not known yet.
+/// Taste: it takes about as long as files do, or more.
+constexpr double kBakePart = 0.5;
+
 struct OccurrenceUse {
     uint32_t node;
     uint32_t lod;
@@ -77,7 +81,7 @@ public:
         find_sky_light();
         collect();
         const double before_files = thread_cpu_seconds();
-        includes_.write(job_);
+        includes_.write(job_.part(sky_light_ && sky_light_->baked() ? kBakePart : 0, 1));
         hide_replaced();
         const double after_files = thread_cpu_seconds();
         name_problems();
@@ -148,7 +152,7 @@ private:
         wanted.load_finest = options_.load_finest;
         const double thread_start = thread_cpu_seconds();
         const double process_start = cpu_seconds();
-        sky_light_.emplace(model_, cut_, wanted, problems_, job_);
+        sky_light_.emplace(model_, cut_, wanted, problems_, job_.part(0, kBakePart));
         // Other threads helped; this one is counted with all it does.
         report_.cpu_s += cpu_seconds() - process_start - (thread_cpu_seconds() - thread_start);
     }

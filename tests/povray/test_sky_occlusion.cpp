@@ -10,6 +10,7 @@
 #include <cstring>
 #include <regex>
 #include <set>
+#include <thread>
 
 using namespace lodestone;
 using namespace lodestone::povray;
@@ -252,6 +253,66 @@ TEST_F(SkyOcclusionScenes, ManyCopiesHaveAtMostFourGrades) {
     EXPECT_GE(report.sky_copies, 1u);
     EXPECT_LE(report.sky_copies, 3u);
     EXPECT_EQ(report.representations, 2 + report.sky_copies);
+}
+
+// The bar stood still, and a picture that was stopped began from nothing again.
+TEST_F(SkyOcclusionScenes, WhatIsFinishedIsKeptWhenItIsStopped) {
+    for (int i = 0; i < 40; ++i)
+        builder.place(builder.mesh(shapes::torus(8, 8 + static_cast<uint32_t>(i))),
+                      at(2 * i, 0, 0));
+    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+    const std::filesystem::path file = own_scratch() / "sky_light.bin";
+    volatile int32_t cancel = 0;
+    volatile int32_t stage = 0;
+    volatile double part = 0;
+    Problems problems;
+    // One thread stops when the other one has found something.
+    std::jthread watcher([&](const std::stop_token& stop) {
+        while (!stop.stop_requested() && part == 0)
+            std::this_thread::yield();
+        cancel = 1;
+    });
+    SkyOcclusionOptions options;
+    options.file = file;
+    options.rays = 1024;
+    EXPECT_THROW(SkyOcclusion(builder.model, cut, options, problems, {&cancel, &stage, &part}),
+                 Error);
+    EXPECT_GT(part, 0);
+    EXPECT_LT(part, 1);
+    const size_t kept = kept_bakes(file).size();
+    EXPECT_GE(kept, 1u);
+    EXPECT_LT(kept, 40u);
+}
+
+// It was walked through for ever: its groups place the next one twice, 40 times over.
+TEST_F(SkyOcclusionScenes, AModelOfEmptyGroupsHasAnEnd) {
+    builder.place(builder.mesh(shapes::cube()));
+    builder.finish();
+    Model& model = builder.model;
+    Object stand_in = model.objects[1];
+    const auto first = static_cast<ObjectIndex>(model.objects.size());
+    for (uint32_t i = 0; i < 40; ++i) {
+        Object group;
+        group.uid = group.name = "group" + std::to_string(i);
+        Representation places;
+        places.summary.kind = Kind::Assembly;
+        Assembly assembly;
+        if (i < 39)
+            assembly.placements.assign(2, {first + i + 1, {}, "next", 0});
+        places.payload = std::make_shared<const Assembly>(assembly);
+        group.representations = {places};
+        model.objects.push_back(group);
+    }
+    model.objects[first].representations.push_back(stand_in.representations[0]);
+    model.objects[first].representations[1].summary.error = 1e-9;
+    builder.place(first);
+    builder.finish();
+    const choose::Cut cut = choose::choose_cut(model, scenes::above());
+    ASSERT_EQ(cut.chosen.size(), 2u);
+    Problems problems;
+    const SkyOcclusion light(model, cut, {}, problems, {});
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].code, "sky_not_occluded");
 }
 
 // Levels for classes of rays had a file for each of up to 257 factors.

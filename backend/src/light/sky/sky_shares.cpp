@@ -86,6 +86,10 @@ std::optional<SkyShares> SkyShares::of_bytes(std::string_view bytes, size_t tria
     return out;
 }
 
+bool whole(const Mesh& mesh, const SkyShares& shares) {
+    return shares.splits.empty() && shares.corners.size() == 3 * mesh.triangles.size();
+}
+
 std::optional<Mesh> split_for_sky(const Mesh& mesh, const SkyShares& shares) {
     const size_t most = shares.corners.size() / 3;
     if (mesh.triangles.size() > most)

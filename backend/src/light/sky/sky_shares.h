@@ -35,6 +35,8 @@ struct SkyShares {
     static std::optional<SkyShares> of_bytes(std::string_view bytes, size_t triangles);
 };
 
+/// Whether the shares are those of the mesh as it is, without splits.
+bool whole(const Mesh& mesh, const SkyShares& shares);
 /// The mesh with its splits; the same one for equal arguments. None where the shares are those of
 /// another mesh.
 std::optional<Mesh> split_for_sky(const Mesh& mesh, const SkyShares& shares);
