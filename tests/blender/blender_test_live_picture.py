@@ -174,6 +174,21 @@ class LivePicture(unittest.TestCase):
         self.assertEqual(len(self.parts), 1)
         self.assertEqual(out.read_bytes(), b"last night's picture")
 
+    def test_a_picture_that_cannot_be_shown_meanwhile_is_finished_all_the_same(self):
+        self.slowly()
+        real, tried = render_result.show_part, []
+
+        def failing(engine, layer, part, depth):
+            tried.append(part)
+            if len(tried) == 1:
+                raise MemoryError("no room for a part")
+            real(engine, layer, part, depth)
+
+        self.patch(render_result, "show_part", failing)
+        bpy.ops.render.render()
+        self.assertEqual(len(tried), 2)  # then the finished picture
+        self.assertGreater(max(tried[1].image.pixels), 0.1)
+
     def test_what_is_drawn_is_told_in_triangles(self):
         grid = scenes.mesh(
             "Grid",

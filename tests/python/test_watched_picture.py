@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Guards how often a picture is shown while it is drawn, and how long it is said to take."""
 
+import tracemalloc
 import unittest
 
 import addon_path  # noqa: F401
 from lodestone.core.native import lodestone_native as native
-from lodestone.core.picture.watched_picture import WatchedPicture
+from lodestone.core.picture.watched_picture import WatchedPicture, watched
 
 
 class _Drawing:
@@ -61,6 +62,30 @@ class Watching(unittest.TestCase):
         self.drawing.waiting = ["part"]
         self.assertEqual(self.look(9.0), [])
         self.assertEqual(self.look(1.1), ["part"])
+
+    def test_pixels_that_come_faster_than_they_are_shown_do_not_keep_the_window_busy(self):
+        self.drawing.waiting = list(range(1000))
+        shown = 0
+        for _ in self.picture.news():
+            self.now += 0.01
+            shown += 1
+            self.drawing.waiting.append(0)
+        self.assertLess(shown, 60)
+        self.assertEqual(len(list(self.picture.rest())), 1000)
+
+    def test_a_picture_of_a_poster_is_not_copied_to_be_watched(self):
+        self.assertIsNone(watched((0, 0, 65000, 1000)))
+        self.assertIsNone(watched((0, 0, 65536, 65536)))
+        self.assertIsNone(watched((0, 0, 70000, 1)))  # larger than the library takes
+        self.assertEqual(watched((0, 0, 64, 36)).live.part, (0, 0, 64, 36))
+
+    def test_asking_again_takes_no_memory_again(self):
+        self.assertEqual(list(self.live.take()), [])
+        tracemalloc.start()
+        self.addCleanup(tracemalloc.stop)
+        for _ in range(3):
+            self.assertEqual(list(self.live.take()), [])
+        self.assertLess(tracemalloc.get_traced_memory()[1], 100_000)
 
     def test_the_time_left_is_that_of_the_pixels_before(self):
         def left(share, after):

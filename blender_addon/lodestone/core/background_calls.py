@@ -53,12 +53,18 @@ class Work:
         self, function: Callable[[], Result], poll: Callable[[], None], interval: float = 0.05
     ) -> Result:
         """Calls function on a new thread and poll() on this one until it is done. Returns its
-        result or raises what it raised; Stopped when it was cancelled."""
+        result or raises what it raised; Stopped when it was cancelled. What poll() raises stops
+        the work, and is raised once that has ended."""
         outcome: dict[str, Any] = {}
         thread = start(function, outcome)
-        while thread.is_alive():
-            poll()
-            thread.join(interval)
+        try:
+            while thread.is_alive():
+                poll()
+                thread.join(interval)
+        except BaseException:
+            self.stop()
+            thread.join()
+            raise
         result: Result = finish(outcome, self._stopping)
         return result
 

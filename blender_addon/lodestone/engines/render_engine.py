@@ -27,7 +27,7 @@ from ..core.native import lodestone_native as native
 from ..core.picture import compare_plan
 from ..core.picture.picture_maker import Settings, make_identities, make_picture
 from ..core.picture.render_folder import RenderFolder
-from ..core.picture.watched_picture import WatchedPicture
+from ..core.picture.watched_picture import WatchedPicture, watched
 from ..core.printable_text import printable, sentence, valid
 from ..core.problems import ERROR, Problems
 from ..core.session import kept_model
@@ -273,18 +273,25 @@ class _Run:
             return self._make(model, view, size, chosen)
 
         if self.state.watched:
-            self.picture = WatchedPicture(self.settings.border)
+            self.picture = watched(self.settings.border)
         try:
             return self.work.run(make, self._poll)
         except Stopped:
             if self.picture is not None:
-                self._show_drawn(self.picture.rest())
+                self._show_drawn(WatchedPicture.rest)
             raise
 
     def _show_drawn(self, parts):
-        depth = self.depsgraph.view_layer_eval.use_pass_z
-        for part in parts:
-            render_result.show_part(self.engine, self.layer, part, depth)
+        """Shows some parts of the picture, `parts` of it. Who looks on is no reason to end a
+        render: after a failure nothing more is shown of it."""
+        try:
+            depth = self.depsgraph.view_layer_eval.use_pass_z
+            for part in parts(self.picture):
+                render_result.show_part(self.engine, self.layer, part, depth)
+        except Exception:
+            print("Lodestone: the picture is not shown while it is drawn:")
+            traceback.print_exc()
+            self.picture = None
 
     def _make(self, model, view, size, chosen):
         """On the worker's thread: no bpy in here."""
@@ -356,8 +363,8 @@ class _Run:
         start, share = _SHARES.get(stage, (0.0, 0.0))
         self.engine.update_progress(start + share * fraction)
         if self.picture is not None and stage == "Trace":
-            self._show_drawn(self.picture.news())
             fraction, left = self.picture.finished, self.picture.seconds_left()
+            self._show_drawn(WatchedPicture.news)
         self._show(self.clock.line(stage, time.monotonic(), fraction, left))
 
     def _stopped(self):

@@ -12,9 +12,14 @@ _INTERVAL_S = 0.25
 # Taste: the share of the time that showing may take where it is slow; a larger one is smoother.
 # Each pixel is shown about four times, so that all of it costs far less.
 _MOST_SHARE = 0.1
+# Taste: seconds after which no more of what is new is shown in one look.
+_MOST_S = 0.5
 # Taste: before so much of a picture is finished, nobody knows how long the rest takes.
 _LEAST_SHARE = 0.03
 _LEAST_S = 2.0
+# Taste: pixels of a picture that is too large to be shown while it is drawn: its copy would take
+# 1 GB, and Blender's own as much.
+_MOST_PIXELS = 64_000_000
 
 
 class WatchedPicture:
@@ -39,6 +44,8 @@ class WatchedPicture:
         for part in self.live.take(bottom_up=True):
             shown = True
             yield part
+            if self._clock() - start > _MOST_S:
+                break  # the window is to answer; the rest comes the next time
         end = self._clock()
         if shown:
             self._next = end + max(_INTERVAL_S, (end - start) / _MOST_SHARE)
@@ -66,3 +73,14 @@ class WatchedPicture:
         if done < _LEAST_SHARE or took < _LEAST_S:
             return None
         return took * (1.0 - share) / done
+
+
+def watched(part: tuple[int, int, int, int]) -> WatchedPicture | None:
+    """A picture to look at while it is drawn; None: it is too large for that, or there is no memory
+    for it."""
+    if part[2] * part[3] > _MOST_PIXELS:
+        return None
+    try:
+        return WatchedPicture(part)
+    except native.LodestoneError:
+        return None
