@@ -16,9 +16,9 @@ constexpr size_t kPieceBytes = 65536;
 /// The time that a call may take.
 /// Taste: a larger value is slower to notice that the work is to stop.
 constexpr std::chrono::milliseconds kMostTime{5};
-/// The calls that the rest of a file may take.
-/// Taste: a larger value waits longer for a file that goes on growing.
-constexpr int kMostCalls = 200;
+/// The time that the rest of a file may take.
+/// Taste: a larger value waits longer for a file that goes on growing, or paints all again and again.
+constexpr std::chrono::seconds kMostRestTime{1};
 
 }  // namespace
 
@@ -39,6 +39,10 @@ bool StateFile::read_some() {
     const auto start = std::chrono::steady_clock::now();
     std::vector<char> piece(kPieceBytes);
     while (std::chrono::steady_clock::now() - start < kMostTime) {
+        if (reader_.behind()) {
+            reader_.read({});
+            continue;
+        }
         const ssize_t got = pread(file_, piece.data(), piece.size(), at_);
         if (got <= 0)
             return false;
@@ -49,7 +53,8 @@ bool StateFile::read_some() {
 }
 
 void StateFile::read_rest() {
-    for (int i = 0; i < kMostCalls && read_some(); ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    while (read_some() && std::chrono::steady_clock::now() - start < kMostRestTime) {
     }
 }
 

@@ -36,6 +36,12 @@ constexpr size_t kMessageHeadBytes = 20;
 /// A longer message is no message.
 /// Taste: POV-Ray's longest have 21 kB; a larger value lets garbage take more memory.
 constexpr uint32_t kMostMessageBytes = 1U << 20U;
+/// A larger square is none of a mosaic.
+/// Taste: POV-Ray's have 32 pixels; a larger value lets garbage take more time.
+constexpr int32_t kMostSquareSide = 1024;
+/// The pixels that a call paints before it ends, with the message that it is in.
+/// Taste: a few milliseconds; a larger value looks at the clock less often.
+constexpr uint64_t kMostPainted = 1U << 22U;
 /// Law: red, green, blue, filter, transmit.
 constexpr size_t kChannels = 5;
 /// Law: the bytes of a number.
@@ -115,26 +121,29 @@ DrawnMessage taken_apart(std::string_view body) {
     return out;
 }
 
-void draw_block(const DrawnMessage& message, LivePicture& picture) {
+/// Returns the number of pixels, as draw_squares() does.
+uint64_t draw_block(const DrawnMessage& message, LivePicture& picture) {
     const int64_t width = int64_t{message.right} - message.left + 1;
     const int64_t height = int64_t{message.bottom} - message.top + 1;
     const size_t count = message.block.size() / (kChannels * kNumberBytes);
     if (count == 0 || message.block.size() % (kChannels * kNumberBytes) != 0 || width < 1 ||
         height < 1 || width > static_cast<int64_t>(count) ||
         static_cast<uint64_t>(width) * static_cast<uint64_t>(height) != count)
-        return;
+        return 0;
     std::vector<LivePixel> pixels(count);
     for (size_t i = 0; i < count; ++i)
         pixels[i] = pixel_at(message.block, i);
     picture.finish({message.left, message.top, static_cast<int>(width), static_cast<int>(height)},
                    pixels);
+    return count;
 }
 
-void draw_squares(const DrawnMessage& message, LivePicture& picture) {
+uint64_t draw_squares(const DrawnMessage& message, LivePicture& picture) {
     const size_t count = message.positions.size() / (2 * kNumberBytes);
-    if (message.side < 1 || message.positions.size() != count * 2 * kNumberBytes ||
+    if (message.side < 1 || message.side > kMostSquareSide ||
+        message.positions.size() != count * 2 * kNumberBytes ||
         message.colors.size() != count * kChannels * kNumberBytes)
-        return;
+        return 0;
     // The squares of a message do not overlap: no message paints more than the whole picture.
     uint64_t painted = 0;
     for (size_t i = 0; i < count && painted <= picture.pixels(); ++i) {
@@ -144,12 +153,14 @@ void draw_squares(const DrawnMessage& message, LivePicture& picture) {
         painted +=
             picture.paint({left, top, message.side, message.side}, pixel_at(message.colors, i));
     }
+    return painted;
 }
 
 }  // namespace
 
 void StateReader::stop_reading() {
     broken_ = true;
+    behind_ = false;
     pending_.clear();
     pending_.shrink_to_fit();
 }
@@ -168,6 +179,8 @@ void StateReader::read(std::string_view piece) {
         rest.remove_prefix(kHeadBytes);
         past_head_ = true;
     }
+    behind_ = false;
+    uint64_t painted = 0;
     while (rest.size() >= kMessageHeadBytes) {
         const uint32_t bytes = number_at(rest, 12);
         if (rest.substr(0, 8) != "POVRAYMS" || rest.substr(16, 4) != "RAWS" ||
@@ -175,11 +188,15 @@ void StateReader::read(std::string_view piece) {
             return stop_reading();
         if (rest.size() - kMessageHeadBytes < bytes)
             break;
+        if (painted > kMostPainted) {
+            behind_ = true;
+            break;
+        }
         const DrawnMessage message = taken_apart(rest.substr(kMessageHeadBytes, bytes));
         if (message.kind == "PxBS")
-            draw_block(message, picture_);
+            painted += draw_block(message, picture_);
         else if (message.kind == "PxSe")
-            draw_squares(message, picture_);
+            painted += draw_squares(message, picture_);
         rest.remove_prefix(kMessageHeadBytes + bytes);
     }
     pending_.erase(0, pending_.size() - rest.size());

@@ -16,8 +16,11 @@ class StateReader {
 public:
     explicit StateReader(LivePicture& picture) : picture_(picture) {}
 
-    /// Takes the next bytes. A message that is not whole yet waits for the rest of it.
+    /// Takes the next bytes. A message that is not whole yet waits for the rest of it; what would
+    /// paint more than a few million pixels waits for the next call.
     void read(std::string_view piece);
+    /// True while a call is to come with nothing new: whole messages wait.
+    bool behind() const { return behind_; }
     /// True once the file turned out to be something else; what comes then is not looked at.
     bool broken() const { return broken_; }
 
@@ -27,6 +30,7 @@ private:
     LivePicture& picture_;
     std::string pending_;  // the bytes of a message that is not whole yet
     bool past_head_ = false;
+    bool behind_ = false;
     bool broken_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include "povray_export/run/state_file.h"
 #include "scratch.h"
 
+#include <chrono>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -56,6 +57,26 @@ TEST(StateFile, IsReadAsItGrows) {
     std::filesystem::remove(path);  // as POV-Ray does in the end; what it wrote can still be read
     file.read_rest();
     EXPECT_EQ(red_of(picture), 3);
+    EXPECT_FALSE(file.broken());
+}
+
+// The rest of a file was read for as long as that took.
+TEST(StateFile, AFileWithoutAnEndIsNotReadToIt) {
+    const auto folder = scratch("state_endless");
+    std::filesystem::create_directories(folder);
+    LivePicture picture({0, 0, 2048, 2048});
+    std::string large = painted(false, '\x40');
+    large.replace(large.find("PiSiINT4") + 12, 4, std::string("\0\0\4\0", 4));  // a side of 1,024
+    std::string piece = painted(true, 0);
+    for (int i = 0; i < 20000; ++i)
+        piece += large;
+    std::ofstream(folder / "part.pov-state", std::ios::binary) << piece;
+    StateFile file(folder / "part.pov-state", picture);
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_TRUE(file.read_some());
+    EXPECT_EQ(red_of(picture), 3);
+    file.read_rest();
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
     EXPECT_FALSE(file.broken());
 }
 

@@ -194,6 +194,35 @@ TEST(StateReader, HostileSizesDrawNothing) {
     EXPECT_EQ(picture.finished(), 640u);
 }
 
+// A file of small messages that each paint all of a large picture kept a call busy without end.
+TEST(StateReader, ACallPaintsAFewMillionPixelsAndTheRestWaits) {
+    LivePicture picture({0, 0, 1024, 1024});
+    StateReader reader(picture);
+    const std::string all = squares(1024, 0, 0, 0, 0);
+    std::string many = head();
+    for (int i = 0; i < 40; ++i)
+        many += all;
+    reader.read(many);
+    EXPECT_TRUE(reader.behind());
+    int calls = 1;
+    for (; reader.behind() && calls < 100; ++calls)
+        reader.read({});
+    EXPECT_FALSE(reader.behind());
+    EXPECT_GE(calls, 10);
+    EXPECT_LE(calls, 40);
+    reader.read(block(0, 0, 31, 19));
+    EXPECT_EQ(picture.finished(), 640u);
+}
+
+TEST(StateReader, ASquareLargerThanAnyMosaicsDrawsNothing) {
+    LivePicture picture({0, 0, 40, 20});
+    StateReader reader(picture);
+    reader.read(head() + squares(1025, 0, 0, 8, 8) + squares(INT_MAX, 0, 0, 8, 8));
+    std::vector<LivePixel> room(1024);
+    EXPECT_FALSE(picture.take(false, room));
+    EXPECT_FALSE(reader.broken());
+}
+
 TEST(StateReader, NumbersThatAreNoneAreBlack) {
     LivePicture picture({0, 0, 2, 1});
     StateReader reader(picture);
@@ -222,7 +251,7 @@ TEST(StateReader, SquaresLargerThanThePictureEndSoon) {
     reader.read(head() + message("PxSe", 3,
                                  attribute("PPos", "VIN4", 2 * kCount, positions) +
                                      attribute("PCol", "VFL4", 5 * kCount, colors) +
-                                     whole_number("PiSi", INT_MAX)));
+                                     whole_number("PiSi", 1024)));
     EXPECT_FALSE(reader.broken());
     EXPECT_EQ(pixels_of(picture).back(), (LivePixel{1, 1, 1, 1}));
 }

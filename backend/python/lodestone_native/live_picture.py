@@ -40,11 +40,14 @@ class LivePicture(Handle):
         handle = ctypes.c_void_p()
         check(library().lds_live_picture_create((ctypes.c_int32 * 4)(*part), handle))
         self._handle = handle
+        self._room = array("f")  # of take(), which is called several times a second
 
     def take(self, bottom_up: bool = False, most: int = 1 << 18) -> Iterator[DrawnPart]:
         """What was drawn since the last time, in rectangles of at most so many pixels (and 1,024 or
-        more)."""
-        room = array("f", bytes(16)) * most
+        more). Only one thread takes."""
+        if len(self._room) != 4 * most:
+            self._room = array("f", bytes(16)) * most
+        room = self._room
         part = (ctypes.c_int32 * 4)()
         while True:
             pixels = pointer_to(room, c_float)
