@@ -183,6 +183,24 @@ class Folders(unittest.TestCase):
         self.assertEqual(self.names(), before)
         self.assertEqual(outside.read_text(), "x")
 
+    def test_folders_of_killed_runs_of_other_files_are_removed(self):
+        for name in ("a.scene", "other.scene", "unsaved.scene", "mine", "a.scenery"):
+            self.die(name)
+        (self.parent / "b").mkdir()
+        (self.parent / "b" / locked_folder.MARK).write_text("")
+        (self.parent / "b.scene-to_there").symlink_to(self.parent / "b")
+        (self.parent / "b.scene-Textures").mkdir()
+        (self.parent / "b.scene-Textures" / locked_folder.MARK).write_text("")
+        living = LockedFolder(self.parent, "living.scene")
+        own = {name for name in self.names() if name.split(".")[0] in ("a", "other", "unsaved")}
+        removed = {name for name in own if not name.startswith("a.scenery")}
+        left = set(self.names()) - removed
+        with mock.patch.dict(os.environ, LODESTONE_CACHE=str(self.parent)):
+            with SceneFolder(self.parent / "sub" / "new.scene", "ALWAYS"):
+                self.assertEqual(len(removed), 3)
+                self.assertEqual(set(self.names()), left | {"sub"})
+        living.remove()
+
     def test_any_name_of_a_file_makes_a_folder(self):
         for name in ("x" * 255, "名" * 85, "a b'\"\n", "-rf"):
             folder = LockedFolder(self.parent, name)

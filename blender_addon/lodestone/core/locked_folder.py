@@ -8,7 +8,7 @@ import os
 import shutil
 import stat
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from .file_names import fitting
@@ -16,6 +16,7 @@ from .file_names import fitting
 MARK = "in_use"
 _LONGEST = 200  # bytes of a prefix: file names end at 255
 _RANDOM = 8  # characters that mkdtemp() adds
+_RANDOM_CHARACTERS = set("abcdefghijklmnopqrstuvwxyz0123456789_")
 
 
 def prefix_of(name: str) -> str:
@@ -75,7 +76,18 @@ class LockedFolder:
 def settle(parent: Path, name: str, keep: bool = False) -> None:
     """Removes the folders of that name whose owner ended without saying what is to become of them,
     or keeps them for the user."""
-    for folder in _folders(parent, name):
+    prefix = prefix_of(name)
+    _settle(_folders(parent, lambda named: named.startswith(prefix), len(prefix)), keep)
+
+
+def settle_all(parent: Path, ending: str) -> None:
+    """Removes the folders of all names with that ending, as settle() does: a file that is never
+    opened again leaves nothing."""
+    _settle(_folders(parent, lambda named: named[: -_RANDOM - 1].endswith(ending)), False)
+
+
+def _settle(folders: Iterator[Path], keep: bool) -> None:
+    for folder in folders:
         try:
             lock = os.open(folder / MARK, os.O_RDWR | os.O_CLOEXEC | os.O_NOFOLLOW)
         except FileNotFoundError:
@@ -130,11 +142,13 @@ def _is_private(folder: Path) -> bool:
         return False
 
 
-def _folders(parent: Path, name: str) -> Iterator[Path]:
-    """Our own ones: what a link leads to, or somebody else can exchange, is not cleared."""
-    prefix = prefix_of(name)
+def _folders(
+    parent: Path, wanted: Callable[[str], bool], prefix: int | None = None
+) -> Iterator[Path]:
+    """Our own ones with wanted names, whose random end begins after so many characters: what a link
+    leads to, or somebody else can exchange, is not cleared."""
     try:
-        entries = [entry for entry in os.scandir(parent) if entry.name.startswith(prefix)]
+        entries = [entry for entry in os.scandir(parent) if wanted(entry.name)]
     except OSError:
         return
     for entry in entries:
@@ -143,8 +157,15 @@ def _folders(parent: Path, name: str) -> Iterator[Path]:
         except OSError:
             continue
         if ours and entry.is_dir(follow_symlinks=False):
-            if len(entry.name) == len(prefix) + _RANDOM:
+            if _is_random(entry.name[-_RANDOM - 1 :]) and (
+                prefix is None or len(entry.name) == prefix + _RANDOM
+            ):
                 yield Path(entry.path)
+
+
+def _is_random(end: str) -> bool:
+    """Whether a name ends as mkdtemp() ends it after prefix_of()."""
+    return end.startswith("-") and set(end[1:]) <= _RANDOM_CHARACTERS
 
 
 def _clear(folder: Path) -> None:

@@ -13,6 +13,7 @@ from typing import Any
 from .. import locked_folder, run_report, stable_ids
 from ..kind_words import DRAWN_KINDS
 from ..native import lodestone_native as native
+from ..store import store_path
 from . import cost_model, quality_tree, unseen_detail
 
 PICTURE = "picture.exr"
@@ -275,11 +276,13 @@ class SceneFolder:
     def __enter__(self) -> "SceneFolder":
         parent, name = self._kept.parent, self._kept.name
         parent.mkdir(parents=True, exist_ok=True)
+        for place in {parent, store_path.cache_folder()}:  # of killed runs, whatever they rendered
+            locked_folder.settle_all(place, store_path.SCENE_ENDING)
         if self._keep == "ALWAYS":
             self._kept.mkdir(exist_ok=True)
             self._hold = locked_folder.Hold(self._kept)
         else:
-            locked_folder.settle(parent, name)  # the folders of killed runs
+            locked_folder.settle(parent, name)  # long names have another ending
             self._locked = locked_folder.LockedFolder(parent, name)
             self.path = self._locked.path
         return self

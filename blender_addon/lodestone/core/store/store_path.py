@@ -9,6 +9,7 @@ from pathlib import Path
 from .. import file_names
 
 FOLDER = "lodestone"
+SCENE_ENDING = ".scene"  # of the folders that file_names knows to lie beside a store
 
 
 def cache_folder(environment: Mapping[str, str] | None = None) -> Path:
@@ -41,7 +42,7 @@ def store_folder(
 
 def scene_folder(store: Path) -> Path:
     """The folder for the files of a POV-Ray scene that is to be kept, beside the store."""
-    return store.with_name(store.name + ".scene")
+    return store.with_name(store.name + SCENE_ENDING)
 
 
 def writable(folder: Path) -> bool:
