@@ -194,6 +194,38 @@ TEST_F(LightPlanTest, AGroundIsCutWhereTheLightOfALampEnds) {
         ASSERT_NEAR(encoded(all.values[i]), encoded(ours.values[i]), 2.5 / 255) << i;
 }
 
+// Up to 20,000 areas were written where it could not be told what they light.
+TEST_F(LightPlanTest, WhereLampsCannotBeChosenOnlyTheStrongestAreDrawn) {
+    Builder builder;
+    add_rooms(builder);
+    const Light near_by = builder.model.lights[0];
+    builder.model.lights = {scenes::sun(1)};
+    for (int i = 0; i < 100; ++i) {
+        Light lamp = near_by;
+        lamp.name = text("lamp ", i);
+        lamp.position.z = -10.0 * (i * 37 % 100);  // below the floor, each farther from the camera
+        builder.model.lights.push_back(lamp);
+    }
+    builder.finish();
+    for (Object& object : builder.model.objects) {
+        for (Representation& representation : object.representations)
+            representation.summary.cost.triangles += 3'000'000;
+    }
+    Problems problems;
+    ExportOptions options = into("unchosen");
+    const ExportReport report = scenes::write(builder.model, from_above(0), options, problems);
+    EXPECT_EQ(report.lamps, 100u);
+    EXPECT_EQ(report.lights_each, 64);
+    const std::string all = read_file(options.folder / "scene.pov");
+    EXPECT_EQ(count_of(all, "fade_power"), 64u);
+    EXPECT_EQ(count_of(all, "parallel"), 1u);
+    EXPECT_EQ(count_of(all, "light_group"), 0u);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].code, "lights_left_out");
+    EXPECT_EQ(problems[0].object, "lamp 72");  // 640 m below: 72 * 37 % 100 is 64
+    EXPECT_NE(problems[0].message.find("35 more of 100"), std::string::npos);
+}
+
 // For two lamps of a street that show nothing far away the whole picture was looked through.
 TEST_F(LightPlanTest, FewLampsAreNotGrouped) {
     Builder builder;

@@ -42,6 +42,9 @@ constexpr int kMostHanded = 2;
 // The most lamps.
 // Taste: more take time that no picture is worth.
 constexpr size_t kMostLamps = 20000;
+// The most lamps where none can be chosen by what they light.
+// Taste: with more of them, each an area with 81 rays or more, no picture is finished.
+constexpr size_t kMostUnchosen = 64;
 // Fewer lamps light everything, if they matter anywhere: no part of a picture can be dark because no
 // point lies on it, and nobody has to look for such parts, which takes most of a plan.
 // Taste: a larger number spares plans, for rays to more lamps at every point.
@@ -175,6 +178,48 @@ LightPlan plan_of(const RegionLights& regions, std::span<const LitPoint> points,
     return plan;
 }
 
+/// The light of a lamp that nothing hides, where the camera is.
+double light_at_camera(const Light& light, const View& view) {
+    const double size = extent_of(light);
+    const glm::dvec3 way = light.position - view.camera.position;
+    const double square = std::max(glm::dot(way, way) + size * size, 1e-12);
+    const double power =
+        std::abs(light.power) * std::max({light.color.x, light.color.y, light.color.z});
+    return power / square;
+}
+
+/// The plan where rays cannot tell what lamps light: those that are strongest at the camera light
+/// everything, others nothing; empty where all of them can. `why` is the reason, for the user.
+LightPlan strongest_plan(std::span<const Light> lights, size_t things, const View& view, int rays,
+                         const char* why, Problems& problems) {
+    std::vector<std::pair<double, uint32_t>> lamps;  // by falling light, then as they come
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+        if (is_lamp(lights[i]))
+            lamps.emplace_back(-light_at_camera(lights[i], view), i);
+    }
+    const size_t count = lamps.size();
+    if (count <= kMostUnchosen)
+        return {};
+    std::sort(lamps.begin(), lamps.end());
+    problems.push_back(
+        {lights[lamps[kMostUnchosen].second].name, Severity::Warning, "lights_left_out",
+         text("it and ", count - kMostUnchosen - 1, " more of ", count, " lamps light nothing: ",
+              why, ", so that only those that are strongest at the camera are drawn")});
+    lamps.resize(kMostUnchosen);
+    LightPlan plan;
+    plan.groups.emplace_back();
+    for (const auto& [light, index] : lamps) {
+        const auto number = static_cast<uint32_t>(plan.lights.size());
+        plan.lights.push_back(lights[index]);
+        plan.groups[0].push_back({number, finest_grid(lights[index], rays)});
+        plan.shadow_rays += shadow_rays(lights[index], plan.groups[0].back().grid);
+    }
+    plan.lights_each = static_cast<double>(kMostUnchosen);
+    for (uint32_t i = 0; i < things; ++i)
+        plan.pieces.push_back({i, 0, {}});
+    return plan;
+}
+
 double rays_to_all(std::span<const Light> lights, int rays) {
     double sum = 0;
     for (const Light& light : lights)
@@ -191,10 +236,17 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     const auto lamps =
         static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), is_lamp));
     if (lamps == 0 || rays_to_all(model.lights, demands.grids.rays) < kFewShadowRays ||
-        drawn.empty() || !ray::available())
+        drawn.empty())
         return {};
+    const auto strongest = [&](const char* why) {
+        return strongest_plan(model.lights, drawn.size(), view, demands.grids.rays, why, problems);
+    };
+    if (!ray::available())
+        return strongest("no rays can be cast to find what each of them lights");
     const bool many = lamps >= kManyLamps;
     if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
+        if (lamps > kMostUnchosen)
+            return strongest("there are more of them, or of triangles, than can be looked through");
         if (many)
             problems.push_back({"", Severity::Info, "lights_as_they_are",
                                 text("all ", lamps,

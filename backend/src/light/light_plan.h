@@ -90,8 +90,10 @@ inline constexpr double kFewShadowRays = 8;
 /// group.
 /// Fewer than 8 lamps are not grouped: those that matter anywhere light everything.
 ///
-/// Empty if lamps cost few rays, rays cannot be cast, or there is too much to cast them at (a
-/// problem).
+/// Where rays cannot be cast, or there is too much to cast them at, the 64 lamps that are strongest
+/// at the camera light everything, and others nothing (a problem).
+///
+/// Empty if lamps cost few rays, or they are few and cannot be chosen.
 LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
                       std::span<const DrawnThing> drawn, const View& view,
                       const LightDemands& demands, Problems& problems, const Job& job = {});

@@ -183,7 +183,7 @@ class Quality(NamedTuple):
             "area_samples": self.area_samples,
             "sky_lights": self.indirect or -1,
             "shadow_error": max(self.shadows, _FEWEST_PIXELS),
-            "light_error": 0.0 if self.antialias == REFERENCE else max(self.lights, _LEAST_STEPS),
+            "light_error": max(self.lights, _LEAST_STEPS),
             "reflection_error": max(self.reflections, 1.0),
             "texture_error": self.textures,
             "sky_rays": self.sky_occlusion or -1,
