@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "base/files.h"
+#include "image/image_reduction.h"
 #include "image/mask_texels.h"
 #include "image/texture_sampler.h"
 #include "povray_export/scene/povray_number.h"
@@ -22,7 +23,7 @@ namespace {
 // The version of baked pictures: raised whenever what is baked changes, for files are found again
 // by their name alone.
 // Law: part of every file's hash.
-constexpr uint32_t kBakeVersion = 1;
+constexpr uint32_t kBakeVersion = 2;
 
 constexpr std::string_view kNameComment = "// i/";
 
@@ -68,39 +69,6 @@ bool usable_as_is(const Texture& texture, PigmentContent content) {
 
 int halved(int side, int halvings) {
     return std::max(1, side >> halvings);
-}
-
-/// The means of the texels that each new texel covers.
-image::Image halved(const image::Image& from, int halvings) {
-    image::Image to;
-    to.width = halved(from.width, halvings);
-    to.height = halved(from.height, halvings);
-    to.pixels.resize(4 * to.size());
-    const auto begin = [](int at, int count, int size) {
-        return static_cast<int>(static_cast<int64_t>(at) * size / count);
-    };
-    for (int y = 0; y < to.height; ++y) {
-        const int top = begin(y, to.height, from.height);
-        const int bottom = std::max(top + 1, begin(y + 1, to.height, from.height));
-        for (int x = 0; x < to.width; ++x) {
-            const int left = begin(x, to.width, from.width);
-            const int right = std::max(left + 1, begin(x + 1, to.width, from.width));
-            std::array<double, 4> sum{};
-            for (int v = top; v < bottom; ++v) {
-                const size_t row = static_cast<size_t>(v) * static_cast<size_t>(from.width);
-                for (int u = left; u < right; ++u) {
-                    for (size_t c = 0; c < 4; ++c)
-                        sum[c] += from.pixels[4 * (row + static_cast<size_t>(u)) + c];
-                }
-            }
-            const double count = static_cast<double>(bottom - top) * (right - left);
-            const size_t at = static_cast<size_t>(y) * static_cast<size_t>(to.width);
-            for (size_t c = 0; c < 4; ++c)
-                to.pixels[4 * (at + static_cast<size_t>(x)) + c] =
-                    static_cast<float>(sum[c] / count);
-        }
-    }
-    return to;
 }
 
 bool is_number(PigmentContent content) {
@@ -160,17 +128,20 @@ std::string baked(const Texture& texture, PigmentContent content, int halvings) 
             const glm::dvec3 color = glm::clamp(image::color_of(texture, texel), 0.0, 1.0);
             for (int c = 0; c < 3; ++c)
                 to.pixels[i + static_cast<size_t>(c)] = static_cast<float>(color[c]);
+            to.pixels[i + 3] = from.pixels[i + 3];
         } else {
             const double number = std::clamp(image::number_of(texture, texel), 0.0, 1.0);
             for (size_t c = 0; c < 3; ++c)
                 to.pixels[i + c] = static_cast<float>(number);
+            to.pixels[i + 3] = 1;
         }
-        to.pixels[i + 3] = 1;
     }
     from.pixels.clear();
     const bool mask = halvings > 0 && content == PigmentContent::Alpha && is_mask(to);
     if (halvings > 0)
-        to = halved(to, halvings);
+        to = image::reduced(to, halved(to.width, halvings), halved(to.height, halvings));
+    for (size_t i = 3; i < to.pixels.size(); i += 4)
+        to.pixels[i] = 1;  // POV-Ray would make holes
     if (mask)
         sharpen(to);
     if (!is_number(content)) {

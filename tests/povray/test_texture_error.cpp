@@ -164,3 +164,30 @@ TEST(PovrayTextureError, HalvingKeepsTheMeanLight) {
         EXPECT_NEAR(decode_srgb(found.pixels[0]), 0.5, 0.01);
     }
 }
+
+TEST(PovrayTextureError, LeavesMadeSmallerHadFringesOfWhatIsClear) {
+    // One texel in three is a green leaf; what is clear around it is black, or white.
+    for (const float clear : {0.0f, 1.0f}) {
+        std::vector<glm::vec4> texels(size_t{kSide} * kSide, glm::vec4(clear, clear, clear, 0));
+        for (size_t i = 0; i < texels.size(); i += 3)
+            texels[i] = glm::vec4(0.2, 0.6, 0.2, 1);
+        const Texture texture = texture_of(scenes::picture(kSide, texels));
+        PictureWriter writer;
+        UvRange range;
+        range.texel = 4.0 / kSide;
+        writer.pigment(texture, PigmentContent::Color, range);
+        const std::filesystem::path folder = own_scratch() / (clear > 0 ? "white" : "black");
+        std::filesystem::remove_all(folder);
+        PictureFolder files(folder);
+        writer.write(files);
+        for (const auto& entry : std::filesystem::directory_iterator(folder / "i")) {
+            const image::Image found = image::read(entry.path());
+            EXPECT_EQ(found.width, kSide / 4);
+            for (size_t i = 0; i < found.pixels.size(); i += 4) {
+                EXPECT_NEAR(decode_srgb(found.pixels[i]), 0.2, 0.01);
+                EXPECT_NEAR(decode_srgb(found.pixels[i + 1]), 0.6, 0.01);
+                EXPECT_EQ(found.pixels[i + 3], 1.0f);
+            }
+        }
+    }
+}

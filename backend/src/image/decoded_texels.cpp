@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/decoded_texels.h"
 
+#include "image/image_reduction.h"
 #include "image/texture_sampler.h"
 
 #include <glm/common.hpp>
@@ -14,47 +15,11 @@ namespace {
 /// Taste: a larger value lets more threads take such memory at once.
 constexpr size_t kLargePicture = size_t{1} << 24u;
 
-/// Averages blocks of `step` x `step` texels, colors weighted by alpha.
-void reduce(Image& image, int step) {
-    Image small;
-    small.width = (image.width + step - 1) / step;
-    small.height = (image.height + step - 1) / step;
-    small.linear = image.linear;
-    small.pixels.resize(4 * small.size());
-    for (int y = 0; y < small.height; ++y) {
-        for (int x = 0; x < small.width; ++x) {
-            glm::dvec4 sum(0.0);
-            glm::dvec3 plain(0.0);
-            int count = 0;
-            for (int j = y * step; j < std::min((y + 1) * step, image.height); ++j) {
-                for (int i = x * step; i < std::min((x + 1) * step, image.width); ++i, ++count) {
-                    const float* from =
-                        image.pixels.data() +
-                        4 * (static_cast<size_t>(j) * static_cast<size_t>(image.width) +
-                             static_cast<size_t>(i));
-                    const glm::dvec3 color(from[0], from[1], from[2]);
-                    const auto alpha = static_cast<double>(from[3]);
-                    sum += glm::dvec4(alpha * color, alpha);
-                    plain += color;
-                }
-            }
-            const glm::dvec3 color = sum.w > 0 ? glm::dvec3(sum) / sum.w : plain / double(count);
-            float* to = small.pixels.data() +
-                        4 * (static_cast<size_t>(y) * static_cast<size_t>(small.width) +
-                             static_cast<size_t>(x));
-            for (int c = 0; c < 3; ++c)
-                to[c] = static_cast<float>(color[c]);
-            to[3] = static_cast<float>(sum.w / count);
-        }
-    }
-    image = std::move(small);
-}
-
-TexelsPtr reduced(Image&& image, int most_side) {
+TexelsPtr with_sides(Image&& image, int most_side) {
     auto out = std::make_shared<DecodedTexels>();
     const int step = (std::max(image.width, image.height) + most_side - 1) / most_side;
     if (step > 1) {
-        reduce(image, step);
+        image = reduced(image, (image.width + step - 1) / step, (image.height + step - 1) / step);
         out->reduced = true;
     }
     out->width = image.width;
@@ -70,7 +35,7 @@ TexelsPtr reduced(Image&& image, int most_side) {
 }  // namespace
 
 TexelsPtr texels_of(const Picture& picture, int most_side) {
-    return reduced(decoded(picture), most_side);
+    return with_sides(decoded(picture), most_side);
 }
 
 TexelsPtr texels_with_cutoff(const Texture& texture, double cutoff, int most_side) {
@@ -81,7 +46,7 @@ TexelsPtr texels_with_cutoff(const Texture& texture, double cutoff, int most_sid
         std::fill(at, at + 3, number >= cutoff ? 1.0f : 0.0f);
         at[3] = 1;  // equal weights for all texels
     }
-    TexelsPtr out = reduced(std::move(image), most_side);
+    TexelsPtr out = with_sides(std::move(image), most_side);
     auto gray = std::make_shared<DecodedTexels>(*out);
     for (size_t i = 0; i < gray->rgba.size(); i += 4)
         gray->rgba[i + 3] = gray->rgba[i];

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Image reduction: pictures of fewer texels, each the mean of those that it covers.
+#pragma once
+
+#include "image/image.h"
+
+namespace lodestone::image {
+
+/// The image with at most as many texels along its sides, each the mean of a block. Colors are
+/// weighted by alpha, which must be straight, but where all of a block is clear: what nobody sees,
+/// often black or white, does not fringe what is seen.
+Image reduced(const Image& from, int width, int height);
+
+}  // namespace lodestone::image
