@@ -66,10 +66,6 @@ MaskTexels mask_texels(const Texture& texture) {
     return out;
 }
 
-bool SeenTexels::any() const {
-    return std::find(blocks.begin(), blocks.end(), uint8_t{1}) != blocks.end();
-}
-
 SeenTexels unseen_texels(int width, int height) {
     SeenTexels out;
     while ((std::max(width, height) + out.side - 1) / out.side > kMostBlocks)
@@ -85,7 +81,13 @@ bool MaskCount::is_mask() const {
     // Fitted: to the eleven alpha textures of a scene of leaves, water and smoke (SuperTuxKart's
     // zengarden): masks have 0.77 to 0.89, blends 0.21 at most.
     constexpr double kLeastSpread = 0.6;
-    return seen > 0 &&
+    // The alpha by which those that are quite clear or there may be off.
+    // Taste: five steps of 8 bits; a larger value makes films and panes opaque.
+    constexpr double kOff = 0.02;
+    const size_t full = sure - clear;
+    const bool two_sides = clear * 20 >= seen && full * 20 >= seen;
+    const bool earnest = clear_mean <= kOff && full_mean >= 1 - kOff;
+    return seen > 0 && (two_sides || earnest) &&
            (sure * 20 >= seen * 19 || ((sure + edge) * 5 >= seen * 4 && spread >= kLeastSpread));
 }
 
@@ -93,6 +95,8 @@ MaskCount count(const MaskTexels& texels, const SeenTexels& seen) {
     MaskCount out;
     uint64_t sum = 0;
     uint64_t squares = 0;
+    uint64_t clear = 0;
+    uint64_t full = 0;
     for (int y = 0; y < texels.height; ++y) {
         const uint8_t* row =
             texels.alpha.data() + static_cast<size_t>(y) * static_cast<size_t>(texels.width);
@@ -105,6 +109,8 @@ MaskCount count(const MaskTexels& texels, const SeenTexels& seen) {
             for (int x = column * seen.side; x < end; ++x) {
                 ++out.seen;
                 out.clear += row[x] <= kClear ? 1u : 0u;
+                clear += row[x] <= kClear ? row[x] : 0u;
+                full += row[x] >= kFull ? row[x] : 0u;
                 if (is_sure(row[x]))
                     ++out.sure;
                 else if (near_sure(texels, x, y))
@@ -118,6 +124,10 @@ MaskCount count(const MaskTexels& texels, const SeenTexels& seen) {
         return out;
     const auto seen_count = static_cast<double>(out.seen);
     out.mean = static_cast<double>(sum) / 255 / seen_count;
+    if (out.clear > 0)
+        out.clear_mean = static_cast<double>(clear) / 255 / static_cast<double>(out.clear);
+    if (out.sure > out.clear)
+        out.full_mean = static_cast<double>(full) / 255 / static_cast<double>(out.sure - out.clear);
     const double most = out.mean * (1 - out.mean);
     out.spread =
         most > 0

@@ -29,8 +29,6 @@ struct SeenTexels {
     int columns = 0;
     int rows = 0;
     std::vector<uint8_t> blocks;
-
-    bool any() const;
 };
 
 /// The blocks of a picture, none of them seen: at most kMostBlocks along a side.
@@ -39,14 +37,18 @@ SeenTexels unseen_texels(int width, int height);
 /// The content of the texels that are seen.
 struct MaskCount {
     size_t seen = 0;
-    size_t sure = 0;    // below 0.1 or above 0.9
-    size_t clear = 0;   // below 0.1
-    size_t edge = 0;    // others with a sure one not more than two texels away
-    double mean = 0;    // of the alpha
-    double spread = 0;  // its variance, over that of an alpha of 0 and 1 with the same mean
+    size_t sure = 0;        // below 0.1 or above 0.9
+    size_t clear = 0;       // below 0.1
+    size_t edge = 0;        // others with a sure one not more than two texels away
+    double mean = 0;        // of the alpha
+    double clear_mean = 0;  // of that of the clear ones; 0 without any
+    double full_mean = 1;   // of that of those above 0.9; 1 without any
+    double spread = 0;      // its variance, over that of an alpha of 0 and 1 with the same mean
 
     /// Whether the alpha says what is there rather than how clear it is: at least 95 % are sure, or
     /// 80 % are, together with needles and blurred edges, and the alpha varies as much as a mask's.
+    /// Where next to all is clear, or next to none, it must be so in earnest: a film that is a little
+    /// clear all over is no mask.
     bool is_mask() const;
 };
 MaskCount count(const MaskTexels& texels, const SeenTexels& seen);
