@@ -51,8 +51,8 @@ bool contains(const Ring& ring, const glm::dvec2& at) {
 /// Cuts the ears of one island.
 class EarCutter {
 public:
-    EarCutter(const std::vector<glm::dvec2>& points, std::vector<glm::uvec3>& out)
-        : points_(points), out_(out) {}
+    EarCutter(const std::vector<glm::dvec2>& points, std::vector<glm::uvec3>& out, const Job& job)
+        : points_(points), out_(out), job_(job) {}
 
     /// The points of a ring have the numbers from `first`. Returns its corner farthest left.
     Corner add(size_t first, size_t count) {
@@ -89,31 +89,49 @@ public:
         list_[bridge2].previous = hole2;
     }
 
+    /// A corner that is no ear becomes one only when a neighbor of it is cut, so that each is looked
+    /// at about three times.
     void cut(Corner start) {
-        // Only corners that turn inward can be in an ear.
+        // The rounds in which all corners are looked at again.
+        // Law: none is needed but for rings that touch or cross.
+        int rounds = 4;
+        enum class EarRound : uint8_t { Usual, Again, Forced };
+        EarRound round = EarRound::Usual;
+        std::vector<uint8_t> no_ear(list_.size(), 0);
         Corner ear = start;
         Corner stop = start;
-        bool forced = false;
+        size_t steps = 0;
         while (list_[ear].previous != list_[ear].next) {
+            if ((++steps & 0xffu) == 0)
+                job_.check();
             const Corner before = list_[ear].previous;
             const Corner after = list_[ear].next;
             const double area = turn(point(before), point(ear), point(after));
             const bool flat = area == 0;
-            if (flat || (area > 0 && (forced || is_ear(before, ear, after)))) {
+            const bool forced = round == EarRound::Forced;
+            if (area > 0 && !forced && no_ear[ear] == 0)
+                no_ear[ear] = is_ear(before, ear, after) ? 0 : 1;
+            if (flat || (area > 0 && (forced || no_ear[ear] == 0))) {
                 if (!flat)
                     out_.emplace_back(list_[before].point, list_[ear].point, list_[after].point);
                 list_[before].next = after;
                 list_[after].previous = before;
+                no_ear[before] = no_ear[after] = 0;
                 stop = after;
-                forced = false;
+                round = EarRound::Usual;
                 ear = after;
                 continue;
             }
             ear = after;
-            if (ear == stop) {
-                if (forced)
-                    return;     // the rest has no corner that turns outward
-                forced = true;  // rings that cross: whatever comes first
+            if (ear != stop)
+                continue;
+            if (forced)
+                return;  // the rest has no corner that turns outward
+            if (round == EarRound::Usual && rounds-- > 0) {
+                round = EarRound::Again;
+                std::fill(no_ear.begin(), no_ear.end(), uint8_t{0});
+            } else {
+                round = EarRound::Forced;  // rings that cross: whatever comes first
             }
         }
     }
@@ -208,6 +226,7 @@ private:
 
     const std::vector<glm::dvec2>& points_;
     std::vector<glm::uvec3>& out_;
+    const Job& job_;
     std::vector<ListedCorner> list_;
 };
 
@@ -333,7 +352,7 @@ double PlaneTriangles::area() const {
     return twice / 2;
 }
 
-PlaneTriangles triangulated(const std::vector<Ring>& rings) {
+PlaneTriangles triangulated(const std::vector<Ring>& rings, const Job& job) {
     PlaneTriangles out;
     std::vector<size_t> starts{0};
     std::vector<RingBox> boxes;
@@ -364,7 +383,7 @@ PlaneTriangles triangulated(const std::vector<Ring>& rings) {
     for (size_t i = 0; i < rings.size(); ++i) {
         if (!(areas[i] > 0))
             continue;
-        EarCutter cutter(out.points, out.triangles);
+        EarCutter cutter(out.points, out.triangles, job);
         const Corner outer = cutter.add(starts[i], rings[i].size());
         std::sort(holes[i].begin(), holes[i].end(), [&](size_t a, size_t b) {
             return std::pair(boxes[a].low.x, a) < std::pair(boxes[b].low.x, b);

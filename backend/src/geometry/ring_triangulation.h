@@ -2,6 +2,7 @@
 // Ring triangulation: islands with holes as well-shaped triangles.
 #pragma once
 
+#include "base/job.h"
 #include "geometry/level_rings.h"
 
 #include <glm/vec3.hpp>
@@ -20,6 +21,7 @@ struct PlaneTriangles {
 /// joined to their island by a line; then edges inside are turned until no circle around a triangle
 /// has a corner of its neighbor in it, so that triangles are as round as the rings let them be.
 /// Rings that cross give triangles of another area. cost: up to O(n^2) of an island's corners.
-PlaneTriangles triangulated(const std::vector<Ring>& rings);
+/// Throws Error(Cancelled).
+PlaneTriangles triangulated(const std::vector<Ring>& rings, const Job& job = {});
 
 }  // namespace lodestone

@@ -126,5 +126,20 @@ TEST(RingTriangulation, ALargeWavyDiskWithManyHoles) {
     expect_whole(rings, corners + 2 * (rings.size() - 1) - 2);
 }
 
+TEST(RingTriangulation, ASnakeOfManyTurnsTookTheCubeOfTheirNumber) {
+    // Every turn but those at its ends has the corner of the other side in its ear.
+    Ring snake;
+    constexpr int kTurns = 4000;
+    for (int i = 0; i < kTurns; ++i)
+        snake.emplace_back(i % 2 == 0 ? 0 : 100, 2 * i);
+    for (int i = kTurns - 1; i >= 0; --i)
+        snake.emplace_back(i % 2 == 0 ? 1 : 101, 2 * i);
+    if (signed_area(snake) < 0)
+        std::reverse(snake.begin(), snake.end());
+    expect_whole({snake}, snake.size() - 2);
+    const volatile int32_t cancel = 1;
+    EXPECT_THROW(triangulated({snake}, Job(&cancel, nullptr, nullptr)), Error);
+}
+
 }  // namespace
 }  // namespace lodestone
