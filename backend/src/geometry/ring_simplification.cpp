@@ -36,18 +36,57 @@ std::optional<glm::dvec2> meeting(const glm::dvec2& a, const glm::dvec2& along, 
     return a + cross(b - a, other) / turn * along;
 }
 
+/// The sides of the frame that a point is on, a bit each.
+unsigned sides_of(const glm::dvec2& at, const RingFrame& frame) {
+    return (at.x == 0 ? 1u : 0u) | (at.x == frame.width ? 2u : 0u) | (at.y == 0 ? 4u : 0u) |
+           (at.y == frame.height ? 8u : 0u);
+}
+
+/// Whether a point lies on the way from one to another, where nothing needs it.
+bool is_between(const glm::dvec2& before, const glm::dvec2& at, const glm::dvec2& after,
+                const RingFrame& frame) {
+    const unsigned sides = sides_of(at, frame);
+    if (sides != 0)
+        return (sides & sides_of(before, frame) & sides_of(after, frame)) != 0;
+    // The distance from a line, as a part of its length, of a point that is on it.
+    // Law: some steps of a double; points between two texels are rounded by as much.
+    constexpr double kOnLine = 1e-12;
+    const glm::dvec2 along = after - before;
+    return glm::dot(at - before, after - at) >= 0 &&
+           std::abs(cross(at - before, along)) <= kOnLine * glm::dot(along, along);
+}
+
+/// The ring without points between others on one straight line, of which no step of RingCollapser
+/// can tell where their one corner were.
+Ring without_between(const Ring& ring, const RingFrame& frame) {
+    Ring out;
+    size_t left = ring.size();
+    for (size_t i = 0; i < ring.size(); ++i) {
+        const glm::dvec2& before = out.empty() ? ring.back() : out.back();
+        const glm::dvec2& after = ring[(i + 1) % ring.size()];
+        if (left > 3 && is_between(before, ring[i], after, frame))
+            --left;
+        else
+            out.push_back(ring[i]);
+    }
+    return out;
+}
+
 class RingCollapser {
 public:
     RingCollapser(const Ring& ring, double tolerance, const RingFrame& frame)
-        : ring_(ring), square_(tolerance * tolerance), frame_(frame) {
+        : ring_(ring), square_(tolerance * tolerance) {
         const auto count = static_cast<uint32_t>(ring.size());
         corners_.resize(count);
         for (uint32_t i = 0; i < count; ++i)
-            corners_[i] = {
-                ring[i], (i + count - 1) % count, (i + 1) % count, i, 0, sides_of(ring[i]) != 0,
-                true};
+            corners_[i] = {ring[i],
+                           (i + count - 1) % count,
+                           (i + 1) % count,
+                           i,
+                           0,
+                           sides_of(ring[i], frame) != 0,
+                           true};
         left_ = count;
-        drop_between_sides();
     }
 
     Ring run() {
@@ -105,26 +144,6 @@ private:
                    std::tie(other.square, other.corner, other.version);
         }
     };
-
-    /// The sides of the frame that a point is on, a bit each.
-    unsigned sides_of(const glm::dvec2& at) const {
-        return (at.x == 0 ? 1u : 0u) | (at.x == frame_.width ? 2u : 0u) | (at.y == 0 ? 4u : 0u) |
-               (at.y == frame_.height ? 8u : 0u);
-    }
-
-    void drop_between_sides() {
-        for (uint32_t i = 0; i < corners_.size(); ++i) {
-            const RingListCorner& own = corners_[i];
-            const unsigned common = sides_of(own.at) & sides_of(corners_[own.previous].at) &
-                                    sides_of(corners_[own.next].at);
-            if (common == 0 || left_ < 4)
-                continue;
-            corners_[own.previous].next = own.next;
-            corners_[own.next].previous = own.previous;
-            corners_[i].alive = false;
-            --left_;
-        }
-    }
 
     void push(uint32_t b) {
         ++corners_[b].version;
@@ -195,7 +214,6 @@ private:
 
     const Ring& ring_;
     double square_;
-    RingFrame frame_;
     std::vector<RingListCorner> corners_;
     size_t left_ = 0;
     std::priority_queue<Collapse> queue_;
@@ -206,7 +224,7 @@ private:
 Ring simplified(const Ring& ring, double tolerance, const RingFrame& frame) {
     if (ring.size() < 4)
         return ring;
-    return RingCollapser(ring, tolerance, frame).run();
+    return RingCollapser(without_between(ring, frame), tolerance, frame).run();
 }
 
 }  // namespace lodestone

@@ -80,6 +80,28 @@ TEST(RingSimplification, PointsOnTheFrameStay) {
     EXPECT_LT(found.size(), 20u);
 }
 
+TEST(RingSimplification, AStripeKeptACornerForEachTexel) {
+    // Upright, between points on the frame; then slanted, far from it.
+    Ring stripe;
+    Ring slanted;
+    for (int i = 0; i <= 64; ++i) {
+        stripe.emplace_back(10.3, 64 - i);
+        slanted.emplace_back(100 + i / 4.0, 100 + i / 8.0);
+    }
+    for (int i = 0; i <= 64; ++i) {
+        stripe.emplace_back(20.7, i);
+        slanted.emplace_back(116 - i / 4.0, 118 - i / 8.0);
+    }
+    for (const Ring& ring : {stripe, slanted}) {
+        const Ring found = simplified(ring, 0.5, {64, 64});
+        EXPECT_EQ(found.size(), 4u);
+        EXPECT_DOUBLE_EQ(signed_area(found), signed_area(ring));
+    }
+    EXPECT_EQ(simplified(stripe, 0, {64, 64}).size(), 4u);
+    // There and back again is no straight way.
+    EXPECT_GE(simplified({{0.5, 1}, {5, 1}, {3, 1}, {9, 1}, {9, 9}}, 0, kFar).size(), 5u);
+}
+
 TEST(RingSimplification, EqualPointsAndSpikesEnd) {
     EXPECT_LE(simplified(Ring(50, {3, 3}), 1, kFar).size(), 50u);
     Ring spike;
