@@ -46,12 +46,19 @@ bool closest(const Texture& texture) {
     return texture.interpolation == TextureInterpolation::Closest;
 }
 
+/// The fewest halvings of a picture that is outlined.
+int least_halvings(const image::MaskTexels& texels) {
+    int halvings = 0;
+    while ((texels.size() >> (2 * static_cast<unsigned>(halvings))) > kMostTexels)
+        ++halvings;
+    return halvings;
+}
+
 int halvings_of(const image::MaskTexels& texels, double tolerance) {
     const int side = std::min(texels.width, texels.height);
-    int halvings = 0;
+    int halvings = least_halvings(texels);
     while ((side >> (halvings + 1)) >= kLeastSide &&
-           ((kOfMean + kPart) * std::ldexp(1.0, halvings + 1) <= tolerance ||
-            (texels.size() >> (2 * static_cast<unsigned>(halvings))) > kMostTexels))
+           (kOfMean + kPart) * std::ldexp(1.0, halvings + 1) <= tolerance)
         ++halvings;
     return halvings;
 }
@@ -222,7 +229,7 @@ MaskOutlines::OutlineRingsPtr MaskOutlines::rings_of(const ShownMask& mask,
 }
 
 MaskOutlinePtr MaskOutlines::outline_at(const ShownMask& mask, const image::MaskTexels& texels,
-                                        int halvings, double level, Hash key) {
+                                        int halvings, double level, Hash key, const Job& job) {
     // Outlines that are nearer to each other than the tolerance may cross: then it is made smaller.
     const double part = part_of(mask.tolerance, halvings);
     for (int halving = 0; halving < 4; ++halving) {
@@ -234,9 +241,7 @@ MaskOutlinePtr MaskOutlines::outline_at(const ShownMask& mask, const image::Mask
             return nullptr;
         MaskOutlinePtr found = outlines_.of(own, [&]() -> MaskOutlinePtr {
             auto out = std::make_shared<MaskOutline>();
-            out->inside = triangulated(rings->simple);
-            out->level = level;
-            out->halvings = halvings;
+            out->inside = triangulated(rings->simple, job);
             // The area of triangles that are missing or lie one on the other.
             // Taste: half a texel of a hundred is not seen; a larger value lets them cross more.
             if (std::abs(out->inside.area() - rings->area) > 0.005 * rings->area + 0.5)
@@ -251,9 +256,10 @@ MaskOutlinePtr MaskOutlines::outline_at(const ShownMask& mask, const image::Mask
     return nullptr;
 }
 
-MaskOutlinePtr MaskOutlines::outline(const ShownMask& mask) {
+MaskOutlinePtr MaskOutlines::outline(const ShownMask& mask, const Job& job) {
     const MaskTexelsPtr texels = this->texels(mask.texture);
-    for (int halvings = halvings_of(*texels, mask.tolerance); halvings >= 0; --halvings) {
+    const int least = least_halvings(*texels);
+    for (int halvings = halvings_of(*texels, mask.tolerance); halvings >= least; --halvings) {
         Hasher picture;
         picture.value(content_of(mask.texture))
             .value(mask.texture.interpolation)
@@ -266,12 +272,12 @@ MaskOutlinePtr MaskOutlines::outline(const ShownMask& mask) {
             levels_.of(use.result(), [&] { return level_of(mask, *texels, halvings); });
         if (level < 0)
             continue;
-        return outline_at(mask, *texels, halvings, level, picture.value(level).result());
+        return outline_at(mask, *texels, halvings, level, picture.value(level).result(), job);
     }
     return nullptr;
 }
 
-MaskOutlinePtr MaskOutlines::hull(const Texture& texture, size_t most_corners) {
+MaskOutlinePtr MaskOutlines::hull(const Texture& texture, size_t most_corners, const Job& job) {
     // The texels along the longer side of the picture whose texels are surrounded.
     // Taste: a larger value leaves fewer clear texels in, for more triangles.
     constexpr int kFinest = 64;
@@ -286,7 +292,7 @@ MaskOutlinePtr MaskOutlines::hull(const Texture& texture, size_t most_corners) {
                              .value(texture.extension == TextureExtension::Repeat)
                              .value(halvings)
                              .result();
-        MaskOutlinePtr found = hulls_.of(key, [&] { return hull_at(texture, halvings); });
+        MaskOutlinePtr found = hulls_.of(key, [&] { return hull_at(texture, halvings, job); });
         if (!found)
             return nullptr;
         if (found->inside.points.size() <= most_corners)
@@ -295,7 +301,7 @@ MaskOutlinePtr MaskOutlines::hull(const Texture& texture, size_t most_corners) {
     return nullptr;
 }
 
-MaskOutlinePtr MaskOutlines::hull_at(const Texture& texture, int halvings) {
+MaskOutlinePtr MaskOutlines::hull_at(const Texture& texture, int halvings, const Job& job) {
     // The share of a picture from which on nothing is gained by leaving out the rest.
     // Taste: a larger value leaves out less, for as many triangles.
     constexpr double kMostLeft = 0.8;
@@ -309,8 +315,7 @@ MaskOutlinePtr MaskOutlines::hull_at(const Texture& texture, int halvings) {
     for (Ring& ring : rings)
         ring = simplified(ring, kOfTexel, {double(width), double(height)});
     auto out = std::make_shared<MaskOutline>();
-    out->inside = triangulated(rings);
-    out->halvings = halvings;
+    out->inside = triangulated(rings, job);
     double area = 0;
     for (const Ring& ring : rings)
         area += signed_area(ring);

@@ -3,6 +3,7 @@
 // picture is outlined once for all its uses in one export.
 #pragma once
 
+#include "base/job.h"
 #include "geometry/ring_triangulation.h"
 #include "image/mask_texels.h"
 
@@ -18,8 +19,6 @@ using MaskTexelsPtr = std::shared_ptr<const image::MaskTexels>;
 /// The inside of a mask over one repetition of its picture: points are picture coordinates.
 struct MaskOutline {
     PlaneTriangles inside;
-    double level = 0;  // what of the texture's number is inside
-    int halvings = 0;  // of the texels that were outlined
 };
 using MaskOutlinePtr = std::shared_ptr<const MaskOutline>;
 
@@ -40,12 +39,13 @@ public:
 
     /// The outline of a mask, of whose alpha the area that is seen keeps the mean: the level is
     /// shifted, and corners are left out without a change of area. Null where it has more corners
-    /// than asked for or kMostCorners, or no level has about the right area.
-    MaskOutlinePtr outline(const ShownMask& mask);
+    /// than asked for or kMostCorners, or no level has about the right area. Throws Error(BadFile),
+    /// Error(Cancelled).
+    MaskOutlinePtr outline(const ShownMask& mask, const Job& job);
 
     /// An outline around all of a texture that is not quite clear, coarse but never inside of it. Null
-    /// where it would have more corners or leaves out next to nothing.
-    MaskOutlinePtr hull(const Texture& texture, size_t most_corners);
+    /// where it would have more corners or leaves out next to nothing. Throws as outline().
+    MaskOutlinePtr hull(const Texture& texture, size_t most_corners, const Job& job);
 
     /// The most corners of an outline.
     /// Taste: a larger value cuts out finer nets, for triangles as many and time that grows with
@@ -66,7 +66,7 @@ private:
         const Value& of(Hash key, const std::function<Value()>& make);
     };
 
-    /// An outline with few corners, and where it begins.
+    /// Rings with few corners, in texels of a picture of `size`, and their area before.
     struct OutlineRings {
         std::vector<Ring> simple;
         size_t corners = 0;
@@ -78,9 +78,9 @@ private:
     static OutlineRingsPtr rings_of(const ShownMask& mask, const image::MaskTexels& texels,
                                     int halvings, double level, double tolerance);
     MaskOutlinePtr outline_at(const ShownMask& mask, const image::MaskTexels& texels, int halvings,
-                              double level, Hash key);
+                              double level, Hash key, const Job& job);
 
-    MaskOutlinePtr hull_at(const Texture& texture, int halvings);
+    MaskOutlinePtr hull_at(const Texture& texture, int halvings, const Job& job);
 
     SharedValues<MaskTexelsPtr> texels_;
     SharedValues<double> levels_;

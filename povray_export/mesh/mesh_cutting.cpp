@@ -248,11 +248,12 @@ private:
             slot.full = clip ? *cutoff <= 0
                              : count.sure == count.seen && count.clear == 0 && count.mean > 0.5;
             if (!slot.full)
-                slot.outline = outlines_.outline({texture, cutoff, seen, slot.tolerance, most});
+                slot.outline =
+                    outlines_.outline({texture, cutoff, seen, slot.tolerance, most}, job_);
             slot.opaque = slot.full || slot.outline;
         }
         if (!slot.opaque)
-            slot.outline = outlines_.hull(texture, slot.hull_corners);
+            slot.outline = outlines_.hull(texture, slot.hull_corners, job_);
         return slot.full || slot.outline;
     }
 
@@ -261,14 +262,6 @@ private:
         out_.mesh.normals = mesh_.normals;
         out_.mesh.uvs = mesh_.uvs;
         out_.mesh.colors = mesh_.colors;
-        out_.corners.resize(mesh_.positions.size());
-        for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
-            for (int k = 0; k < 3; ++k) {
-                CornerSource& corner = out_.corners[mesh_.triangles[i][k]];
-                corner.triangle = static_cast<uint32_t>(i);
-                corner.weights = glm::vec3(k == 0, k == 1, k == 2);
-            }
-        }
     }
 
     void keep(size_t triangle) {
@@ -282,7 +275,7 @@ private:
         const size_t vertices = out_.mesh.positions.size();
         std::optional<TriangleCutter> cutter;
         if (!slot.full)
-            cutter.emplace(*slot.outline, slot.material->alpha_texture);
+            cutter.emplace(*slot.outline, slot.material->alpha_texture, job_);
         for (size_t i = 0; i < slot.triangles.size(); ++i) {
             if ((i & 0xffu) == 0xffu)
                 job_.check();
@@ -308,11 +301,13 @@ private:
     /// Cuts off what is clear of a slot that became too many triangles, or keeps it.
     void trim(const CutSlot& slot, size_t before, size_t vertices) {
         CutSlot hull = slot;
-        hull.outline =
-            slot.opaque ? outlines_.hull(slot.material->alpha_texture, slot.hull_corners) : nullptr;
+        if (slot.opaque)
+            hull.outline = outlines_.hull(slot.material->alpha_texture, slot.hull_corners, job_);
+        else
+            hull.outline = nullptr;
         bool fits = hull.outline != nullptr;
         if (fits) {
-            TriangleCutter cutter(*hull.outline, slot.material->alpha_texture);
+            TriangleCutter cutter(*hull.outline, slot.material->alpha_texture, job_);
             for (size_t i = 0; fits && i < slot.triangles.size(); ++i)
                 fits = cut_one(cutter, slot.triangles[i], hull, before + slot.most);
             out_.any = out_.any || fits;
@@ -361,7 +356,6 @@ private:
     void add_corner(uint32_t triangle, const glm::dvec3& weights) {
         const Triangle& t = mesh_.triangles[triangle];
         const glm::vec3 w(weights);
-        out_.corners.push_back({triangle, w});
         out_.mesh.positions.emplace_back(weights.x * glm::dvec3(mesh_.positions[t.x]) +
                                          weights.y * glm::dvec3(mesh_.positions[t.y]) +
                                          weights.z * glm::dvec3(mesh_.positions[t.z]));
@@ -379,7 +373,6 @@ private:
         out_.mesh.triangles.resize(triangles);
         out_.mesh.slots.resize(triangles);
         out_.sources.resize(triangles);
-        out_.corners.resize(vertices);
         out_.mesh.positions.resize(vertices);
         out_.mesh.uvs.resize(vertices);
         if (!mesh_.normals.empty())

@@ -11,26 +11,19 @@
 
 namespace lodestone::povray {
 
-/// The place of a vertex in the mesh that was cut: a triangle and the weights of its corners.
-struct CornerSource {
-    uint32_t triangle = 0;
-    glm::vec3 weights{1, 0, 0};
-};
-
 /// A mesh with cut-out masks. What is not cut keeps its order and its vertices.
 struct CutMesh {
     bool any = false;  // false: nothing was cut, and the rest is empty
     Mesh mesh;
-    std::vector<uint32_t> sources;      // the cut triangle that each triangle is of
-    std::vector<CornerSource> corners;  // one a vertex; vertices that nothing uses have any
-    std::vector<uint8_t> opaque;        // by slot, 1: what is left has no alpha
+    std::vector<uint32_t> sources;  // the triangle that each triangle is of
+    std::vector<uint8_t> opaque;    // by slot, 1: what is left has no alpha
 };
 
-/// The mesh of a representation with the masks among its materials cut out: those with an alpha
-/// texture of which 95 % of what the mesh shows is below 0.1 or above 0.9, and those that are
-/// clipped by a cutoff. Positions, normals, texture coordinates and colors of new corners are
-/// interpolated. Where they are no mask, painted clear, or would become more triangles than pay, slots
-/// keep their texture and lose what is clear around it. They stay as they are where they refract, are
+/// The mesh of a representation with the masks among its materials cut out: those whose alpha is a
+/// mask where the mesh shows it (MaskCount::is_mask()), those that are clipped by a cutoff, and blends
+/// of which a ray meets more than POV-Ray bears. Positions, normals, texture coordinates and colors
+/// of new corners are interpolated. Where they are no mask, painted clear, or would become more
+/// triangles than pay, slots keep their texture and lose what is clear around it. They stay as they are where they refract, are
 /// mixed, or show what lies beside a picture that ends there. Throws Error(InvalidArgument) for a
 /// material out of range, Error(BadFile), Error(Cancelled).
 CutMesh cut_masks(const Model& model, const Representation& representation,

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 namespace lodestone::povray {
@@ -18,6 +19,9 @@ constexpr double kEdge = 1e-4;
 /// A weight nearer to 0 is 0, so that no sliver is cut off.
 /// Taste: a thousandth of a texel of a picture of a thousand; a larger value moves corners.
 constexpr double kThin = 1e-6;
+/// The share of a triangle that may be missing of a whole one.
+/// Taste: slivers between repetitions; a larger value fills holes.
+constexpr double kWhole = 1e-4;
 /// Repetitions of a picture in a triangle from which on all of it counts as seen.
 /// Taste: a larger value looks at each of more repetitions.
 constexpr double kManyTiles = 16;
@@ -49,6 +53,32 @@ bool mirrored(const Texture& texture, int64_t tile) {
     return texture.extension == TextureExtension::Mirror && (tile & 1) != 0;
 }
 
+/// A range of one coordinate; `low` above `high`: it is empty.
+struct PlaneRange {
+    double low = kInfinity;
+    double high = -kInfinity;
+};
+
+/// What of a triangle lies between two heights, along the other axis.
+PlaneRange range_between(const glm::dvec2 (&at)[3], double bottom, double top) {
+    PlaneRange out;
+    const auto add = [&](double x) {
+        out.low = std::min(out.low, x);
+        out.high = std::max(out.high, x);
+    };
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec2& a = at[k];
+        const glm::dvec2& b = at[(k + 1) % 3];
+        if (a.y >= bottom && a.y <= top)
+            add(a.x);
+        for (const double y : {top, bottom}) {
+            if ((a.y < y) != (b.y < y))
+                add(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+        }
+    }
+    return out;
+}
+
 /// Flags the blocks of one repetition that a triangle meets; `at` is relative to it.
 void note_tile(image::SeenTexels& seen, const glm::dvec2 (&at)[3]) {
     const PlaneBox box = box_of(at);
@@ -60,29 +90,34 @@ void note_tile(image::SeenTexels& seen, const glm::dvec2 (&at)[3]) {
          ++row) {
         const double top = 1 - static_cast<double>(row) / seen.rows;
         const double bottom = 1 - static_cast<double>(row + 1) / seen.rows;
-        double low = kInfinity;
-        double high = -kInfinity;
-        const auto add = [&](double x) {
-            low = std::min(low, x);
-            high = std::max(high, x);
-        };
-        for (int k = 0; k < 3; ++k) {
-            const glm::dvec2& a = at[k];
-            const glm::dvec2& b = at[(k + 1) % 3];
-            if (a.y >= bottom && a.y <= top)
-                add(a.x);
-            for (const double y : {top, bottom}) {
-                if ((a.y < y) != (b.y < y))
-                    add(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
-            }
-        }
-        if (!(low <= high) || high < 0 || low > 1)
+        const PlaneRange range = range_between(at, bottom, top);
+        if (!(range.low <= range.high) || range.high < 0 || range.low > 1)
             continue;
         uint8_t* flags =
             seen.blocks.data() + static_cast<size_t>(row) * static_cast<size_t>(seen.columns);
-        std::fill(flags + index(low, seen.columns), flags + index(high, seen.columns) + 1,
-                  uint8_t{1});
+        std::fill(flags + index(range.low, seen.columns),
+                  flags + index(range.high, seen.columns) + 1, uint8_t{1});
     }
+}
+
+/// The part of a line's length, from `from` to `to`, that is inside a triangle.
+PlaneRange range_inside(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2 (&at)[3]) {
+    PlaneRange out{0, 1};
+    for (int k = 0; k < 3; ++k) {
+        const glm::dvec2 side = at[(k + 1) % 3] - at[k];
+        const auto left = [&](const glm::dvec2& p) {
+            return side.x * (p.y - at[k].y) - side.y * (p.x - at[k].x);
+        };
+        const double a = left(from);
+        const double b = left(to);
+        if (a < 0 && b < 0)
+            return {};
+        if (a < 0)
+            out.low = std::max(out.low, a / (a - b));
+        else if (b < 0)
+            out.high = std::min(out.high, a / (a - b));
+    }
+    return out;
 }
 
 /// A corner of a polygon that is cut, and the edge of the outline's triangle that it is on.
@@ -130,8 +165,11 @@ bool note_seen(image::SeenTexels& seen, const Texture& texture, const glm::dvec2
     return true;
 }
 
-TriangleCutter::TriangleCutter(const MaskOutline& outline, const Texture& texture)
-    : inside_(outline.inside), texture_(texture), visited_(outline.inside.triangles.size(), 0) {
+TriangleCutter::TriangleCutter(const MaskOutline& outline, const Texture& texture, const Job& job)
+    : inside_(outline.inside),
+      texture_(texture),
+      job_(job),
+      visited_(outline.inside.triangles.size(), 0) {
     // The squares along a side.
     // Taste: about two triangles a square; more take longer to make than they save.
     constexpr double kMostSquares = 64;
@@ -156,6 +194,7 @@ const CutTriangle& TriangleCutter::cut(const glm::dvec2 (&at)[3], size_t most) {
     out_.outcome = CutOutcome::Pieces;
     out_.corners.clear();
     out_.triangles.clear();
+    pieces_ = 0;
     const glm::dvec2 a = at[1] - at[0];
     const glm::dvec2 b = at[2] - at[0];
     const double twice = a.x * b.y - a.y * b.x;
@@ -163,8 +202,10 @@ const CutTriangle& TriangleCutter::cut(const glm::dvec2 (&at)[3], size_t most) {
     // Law: a line, to the rounding of texture coordinates in single precision.
     constexpr double kLine = 1e-7;
     if (!(std::abs(twice) > kLine * longest) || !(std::abs(twice) > 1e-300)) {
-        out_.outcome =
-            inside((at[0] + at[1] + at[2]) / 3.0) ? CutOutcome::Whole : CutOutcome::Pieces;
+        if (longest > kThin * kThin)
+            cut_line(at, most);
+        else if (inside(at[0]))
+            out_.outcome = CutOutcome::Whole;
         return out_;
     }
     // weights = (gradients . place) + constant
@@ -173,34 +214,164 @@ const CutTriangle& TriangleCutter::cut(const glm::dvec2 (&at)[3], size_t most) {
     to_weights_[1] = {across1.x, across1.y, -glm::dot(across1, at[0])};
     to_weights_[2] = {across2.x, across2.y, -glm::dot(across2, at[0])};
     to_weights_[0] = glm::dvec3(0, 0, 1) - to_weights_[1] - to_weights_[2];
-    const PlaneBox box = box_of(at);
-    low_ = box.low;
-    high_ = box.high;
-    auto [left, right] = tiles(box.low.x, box.high.x);
-    auto [bottom, top] = tiles(box.low.y, box.high.y);
-    if (!repeats(texture_)) {
-        left = right = bottom = top = 0;
-    } else if (static_cast<double>(right - left + 1) * static_cast<double>(top - bottom + 1) >
-               4.0 * static_cast<double>(most)) {
-        out_.outcome = CutOutcome::TooMany;
-        return out_;
-    }
     area_ = 0;
+    const bool few = each_piece(at, most, [&](uint32_t piece, const PictureTile& tile) {
+        cut_piece(piece, tile);
+        return out_.triangles.size() <= most;
+    });
+    if (!few)
+        out_.outcome = CutOutcome::TooMany;
+    else if (area_ >= 1 - kWhole)
+        out_.outcome = CutOutcome::Whole;
+    return out_;
+}
+
+TriangleCutter::PictureTile TriangleCutter::tile_of(int64_t column, int64_t row) const {
+    PictureTile tile{glm::dvec2(column, row), glm::dvec2(1.0)};
+    if (mirrored(texture_, column)) {
+        tile.origin.x += 1;
+        tile.sign.x = -1;
+    }
+    if (mirrored(texture_, row)) {
+        tile.origin.y += 1;
+        tile.sign.y = -1;
+    }
+    return tile;
+}
+
+/// Visits what of the outline may meet a triangle, in every repetition that it meets. False: these
+/// are too many, or a visit was false.
+template <typename Visit>
+bool TriangleCutter::each_piece(const glm::dvec2 (&at)[3], size_t most, const Visit& visit) {
+    // The pieces of the outline that are looked at for each triangle that may be left.
+    // Taste: a larger value cuts nets of which little is seen, for time.
+    constexpr size_t kPiecesEach = 16;
+    const size_t most_pieces = kPiecesEach * (most + inside_.triangles.size());
+    size_t tiles_left = most + 1;
+    const PlaneBox box = box_of(at);
+    const bool once = !repeats(texture_);
+    const auto [bottom, top] = once ? std::pair<int64_t, int64_t>() : tiles(box.low.y, box.high.y);
     for (int64_t row = bottom; row <= top; ++row) {
+        int64_t left = 0;
+        int64_t right = 0;
+        if (!once) {
+            const PlaneRange range =
+                range_between(at, static_cast<double>(row), static_cast<double>(row + 1));
+            if (!(range.low <= range.high))
+                continue;
+            std::tie(left, right) = tiles(range.low, range.high);
+        }
         for (int64_t column = left; column <= right; ++column) {
-            cut_tile(column, row);
-            if (out_.triangles.size() > most) {
-                out_.outcome = CutOutcome::TooMany;
-                return out_;
+            job_.check();
+            if (tiles_left-- == 0)
+                return false;
+            ++visit_;
+            known_count_ = 0;
+            bool go_on = true;
+            const PictureTile tile = tile_of(column, row);
+            each_piece_of(tile, at, [&](uint32_t piece) {
+                go_on = go_on && ++pieces_ <= most_pieces && visit(piece, tile);
+            });
+            if (!go_on)
+                return false;
+        }
+    }
+    return true;
+}
+
+template <typename Visit>
+void TriangleCutter::each_piece_of(const PictureTile& tile, const glm::dvec2 (&at)[3],
+                                   const Visit& visit) {
+    glm::dvec2 here[3];
+    for (int k = 0; k < 3; ++k)
+        here[k] = (at[k] - tile.origin) / tile.sign;
+    const PlaneBox box = box_of(here);
+    const auto index = [&](double place) {
+        return static_cast<int>(std::clamp(std::floor(place * side_), 0.0, side_ - 1.0));
+    };
+    for (int y = index(box.low.y - kThin); y <= index(box.high.y + kThin); ++y) {
+        // What lies beyond the picture's border belongs to other rows.
+        const PlaneRange range = range_between(here, static_cast<double>(y) / side_ - kThin,
+                                               static_cast<double>(y + 1) / side_ + kThin);
+        if (!(range.low <= range.high))
+            continue;
+        for (int x = index(range.low - kThin); x <= index(range.high + kThin); ++x) {
+            for (const uint32_t piece : squares_[static_cast<size_t>(y * side_ + x)]) {
+                if (std::exchange(visited_[piece], visit_) != visit_)
+                    visit(piece);
             }
         }
     }
-    // The share of a triangle that may be missing of a whole one.
-    // Taste: slivers between repetitions; a larger value fills holes.
-    constexpr double kWhole = 1e-4;
-    if (area_ >= 1 - kWhole)
+}
+
+/// Cuts a triangle that shows a line of the picture into strips across it.
+void TriangleCutter::cut_line(const glm::dvec2 (&at)[3], size_t most) {
+    int from = 0;
+    for (int k = 1; k < 3; ++k) {
+        const auto length = [&](int i) { return glm::length(at[(i + 1) % 3] - at[i]); };
+        if (length(k) > length(from))
+            from = k;
+    }
+    const glm::dvec2 begin = at[from];
+    const glm::dvec2 end = at[(from + 1) % 3];
+    std::vector<PlaneRange> ranges;
+    const bool few = each_piece(at, most, [&](uint32_t piece, const PictureTile& tile) {
+        glm::dvec2 corners[3];
+        for (int k = 0; k < 3; ++k)
+            corners[k] = inside_.points[inside_.triangles[piece][k]];
+        const PlaneRange range = range_inside((begin - tile.origin) / tile.sign,
+                                              (end - tile.origin) / tile.sign, corners);
+        if (range.low <= range.high)
+            ranges.push_back(range);
+        return ranges.size() <= most;
+    });
+    std::sort(ranges.begin(), ranges.end(), [](const PlaneRange& a, const PlaneRange& b) {
+        return std::tie(a.low, a.high) < std::tie(b.low, b.high);
+    });
+    size_t count = 0;  // of ranges that are apart
+    for (const PlaneRange& range : ranges) {
+        if (count > 0 && range.low <= ranges[count - 1].high + kThin)
+            ranges[count - 1].high = std::max(ranges[count - 1].high, range.high);
+        else
+            ranges[count++] = range;
+    }
+    if (count == 1 && ranges[0].high - ranges[0].low >= 1 - kWhole) {
         out_.outcome = CutOutcome::Whole;
-    return out_;
+        return;
+    }
+    const glm::dvec2 along = (end - begin) / glm::dot(end - begin, end - begin);
+    glm::dvec3 places(0.0);
+    for (int k = 0; k < 3; ++k)
+        places[k] = std::clamp(glm::dot(at[k] - begin, along), 0.0, 1.0);
+    for (size_t i = 0; i < count; ++i)
+        add_strip(places, ranges[i].low, ranges[i].high);
+    if (!few || out_.triangles.size() > most)
+        out_.outcome = CutOutcome::TooMany;
+}
+
+/// Adds what of the triangle lies between two places along its line, at which its corners are
+/// `along`.
+void TriangleCutter::add_strip(const glm::dvec3& along, double low, double high) {
+    std::vector<glm::dvec3> polygon{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (const double sign : {1.0, -1.0}) {
+        const double border = sign > 0 ? low : high;
+        std::vector<glm::dvec3> next;
+        for (size_t i = 0; i < polygon.size(); ++i) {
+            const glm::dvec3& a = polygon[i];
+            const glm::dvec3& b = polygon[(i + 1) % polygon.size()];
+            const double wa = sign * (glm::dot(a, along) - border);
+            const double wb = sign * (glm::dot(b, along) - border);
+            if (wa >= 0)
+                next.push_back(a);
+            if ((wa > 0 && wb < 0) || (wa < 0 && wb > 0))
+                next.push_back(a + wa / (wa - wb) * (b - a));
+        }
+        polygon = std::move(next);
+    }
+    const auto first = static_cast<uint32_t>(out_.corners.size());
+    out_.corners.insert(out_.corners.end(), polygon.begin(), polygon.end());
+    for (uint32_t i = 2; i < polygon.size(); ++i)
+        out_.triangles.emplace_back(first, first + i - 1, first + i);
 }
 
 bool TriangleCutter::inside(const glm::dvec2& at) const {
@@ -234,39 +405,6 @@ bool TriangleCutter::inside(const glm::dvec2& at) const {
     });
 }
 
-void TriangleCutter::cut_tile(int64_t column, int64_t row) {
-    ++visit_;
-    known_count_ = 0;
-    // A point p of the picture lies at origin + sign * p.
-    glm::dvec2 origin(column, row);
-    glm::dvec2 sign(1.0);
-    if (mirrored(texture_, column)) {
-        origin.x += 1;
-        sign.x = -1;
-    }
-    if (mirrored(texture_, row)) {
-        origin.y += 1;
-        sign.y = -1;
-    }
-    glm::dvec2 low = (low_ - origin) / sign;
-    glm::dvec2 high = (high_ - origin) / sign;
-    for (int i = 0; i < 2; ++i) {
-        if (low[i] > high[i])
-            std::swap(low[i], high[i]);
-    }
-    const auto index = [&](double place) {
-        return static_cast<int>(std::clamp(std::floor(place * side_), 0.0, side_ - 1.0));
-    };
-    for (int y = index(low.y); y <= index(high.y); ++y) {
-        for (int x = index(low.x); x <= index(high.x); ++x) {
-            for (const uint32_t piece : squares_[static_cast<size_t>(y * side_ + x)]) {
-                if (std::exchange(visited_[piece], visit_) != visit_)
-                    cut_piece(piece, origin, sign);
-            }
-        }
-    }
-}
-
 uint32_t TriangleCutter::corner(uint64_t key, const glm::dvec3& weights) {
     if (2 * known_count_ >= known_.size()) {
         std::vector<KnownCorner> larger(2 * known_.size());
@@ -292,7 +430,7 @@ uint32_t TriangleCutter::corner(uint64_t key, const glm::dvec3& weights) {
 
 /// Cuts one triangle of the outline by the three sides of the triangle (Sutherland and Hodgman
 /// 1974), in its weights: a side is where one of them is 0.
-void TriangleCutter::cut_piece(uint32_t piece, const glm::dvec2& origin, const glm::dvec2& sign) {
+void TriangleCutter::cut_piece(uint32_t piece, const PictureTile& tile) {
     // Law: three corners, and one more for each side that cuts.
     constexpr size_t kMostPolygon = 9;
     std::array<CutCorner, kMostPolygon> polygon;
@@ -300,7 +438,7 @@ void TriangleCutter::cut_piece(uint32_t piece, const glm::dvec2& origin, const g
     size_t count = 3;
     for (int k = 0; k < 3; ++k) {
         const uint32_t point = inside_.triangles[piece][k];
-        const glm::dvec2 at = origin + sign * inside_.points[point];
+        const glm::dvec2 at = tile.origin + tile.sign * inside_.points[point];
         glm::dvec3 weights;
         for (int i = 0; i < 3; ++i) {
             weights[i] = to_weights_[i].x * at.x + to_weights_[i].y * at.y + to_weights_[i].z;

@@ -2,6 +2,7 @@
 // Triangle cutter: what of a triangle is inside an outline that its picture repeats.
 #pragma once
 
+#include "base/job.h"
 #include "povray_export/mesh/mask_outlines.h"
 
 #include <glm/vec3.hpp>
@@ -28,35 +29,46 @@ struct CutTriangle {
 bool note_seen(image::SeenTexels& seen, const Texture& texture, const glm::dvec2 (&at)[3]);
 
 /// Cuts triangles, one after the other, along the outline of one mask. It serves one thread, and
-/// both arguments must outlive it.
+/// all arguments must outlive it.
 class TriangleCutter {
 public:
-    TriangleCutter(const MaskOutline& outline, const Texture& texture);
+    TriangleCutter(const MaskOutline& outline, const Texture& texture, const Job& job);
 
-    /// Cuts the triangle with these picture coordinates; the pieces turn as it does. A triangle that
-    /// shows a line or a point of the picture is there as a whole, or not at all. The result is
-    /// valid until the next call.
+    /// Cuts the triangle with these picture coordinates; the pieces turn as it does. One that shows a
+    /// line of the picture is cut across it, one that shows a point is there or not. The result is
+    /// valid until the next call. cost: O(most + triangles of the outline), for what takes longer is
+    /// TooMany. Throws Error(Cancelled).
     const CutTriangle& cut(const glm::dvec2 (&at)[3], size_t most);
 
 private:
-    void cut_tile(int64_t column, int64_t row);
-    void cut_piece(uint32_t piece, const glm::dvec2& origin, const glm::dvec2& sign);
+    /// One repetition of the picture: a point p of it lies at origin + sign * p.
+    struct PictureTile {
+        glm::dvec2 origin;
+        glm::dvec2 sign;
+    };
+    template <typename Visit>
+    bool each_piece(const glm::dvec2 (&at)[3], size_t most, const Visit& visit);
+    template <typename Visit>
+    void each_piece_of(const PictureTile& tile, const glm::dvec2 (&at)[3], const Visit& visit);
+    PictureTile tile_of(int64_t column, int64_t row) const;
+    void cut_piece(uint32_t piece, const PictureTile& tile);
+    void cut_line(const glm::dvec2 (&at)[3], size_t most);
+    void add_strip(const glm::dvec3& along, double low, double high);
     bool inside(const glm::dvec2& at) const;
     uint32_t corner(uint64_t key, const glm::dvec3& weights);
 
     const PlaneTriangles& inside_;
     const Texture& texture_;
+    const Job& job_;
     // The triangles of the outline by the squares of a grid over the picture that they touch.
     int side_ = 1;
     std::vector<std::vector<uint32_t>> squares_;
     std::vector<uint32_t> visited_;  // by triangle: the number of the last cut that met it
     uint32_t visit_ = 0;
+    size_t pieces_ = 0;  // of the outline that this triangle was cut by
 
-    // The triangle that is cut: from picture coordinates to weights.
-    glm::dvec2 low_{0.0};
-    glm::dvec2 high_{0.0};
-    glm::dvec3 to_weights_[3];
-    double area_ = 0;  // of what is left, as a share
+    glm::dvec3 to_weights_[3];  // of the triangle that is cut, from picture coordinates
+    double area_ = 0;           // of what is left, as a share
     // The corners of this visit, by their keys.
     struct KnownCorner {
         uint64_t key = 0;

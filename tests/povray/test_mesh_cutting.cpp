@@ -2,6 +2,7 @@
 // Guards cut-out masks: what is cut, its area and attributes, and that pictures stay.
 #include "povray/povray_scenes.h"
 #include "povray_export/mesh/mesh_cutting.h"
+#include "povray_export/mesh/triangle_cutter.h"
 
 #include <functional>
 #include <limits>
@@ -95,7 +96,6 @@ TEST(MeshCutting, ADiskHasItsAreaWithinATexelOfItsOutline) {
     EXPECT_NEAR(surface_area(found.mesh), kPi * 0.09, 0.002);
     EXPECT_LT(found.mesh.triangles.size(), 60u);
     ASSERT_EQ(found.sources.size(), found.mesh.triangles.size());
-    ASSERT_EQ(found.corners.size(), found.mesh.positions.size());
     for (const Triangle& t : found.mesh.triangles) {
         for (int k = 0; k < 3; ++k) {
             const glm::vec3& at = found.mesh.positions[t[k]];
@@ -105,7 +105,7 @@ TEST(MeshCutting, ADiskHasItsAreaWithinATexelOfItsOutline) {
     EXPECT_GT(area_vector(found.mesh, 0).z, 0);
 }
 
-TEST(MeshCutting, NewCornersAreInterpolatedAndKnowTheirPlaces) {
+TEST(MeshCutting, NewCornersAreInterpolated) {
     Mesh mesh = card();
     mesh.normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
     mesh.colors = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {0.5, 0.5, 0.5, 1}};
@@ -114,19 +114,17 @@ TEST(MeshCutting, NewCornersAreInterpolatedAndKnowTheirPlaces) {
     ASSERT_EQ(found.mesh.normals.size(), found.mesh.positions.size());
     ASSERT_EQ(found.mesh.colors.size(), found.mesh.positions.size());
     for (size_t i = 0; i < found.mesh.triangles.size(); ++i) {
+        const Triangle& t = mesh.triangles[found.sources[i]];
+        const glm::vec3 a = mesh.positions[t.y] - mesh.positions[t.x];
+        const glm::vec3 b = mesh.positions[t.z] - mesh.positions[t.x];
         for (int k = 0; k < 3; ++k) {
             const uint32_t vertex = found.mesh.triangles[i][k];
-            const CornerSource& from = found.corners[vertex];
-            EXPECT_EQ(from.triangle, found.sources[i]);
-            EXPECT_NEAR(from.weights.x + from.weights.y + from.weights.z, 1, 1e-5);
-            const Triangle& t = mesh.triangles[from.triangle];
-            glm::vec3 at(0.0f);
-            glm::vec4 color(0.0f);
-            for (int j = 0; j < 3; ++j) {
-                at += from.weights[j] * mesh.positions[t[j]];
-                color += from.weights[j] * mesh.colors[t[j]];
-            }
-            EXPECT_NEAR(glm::length(at - found.mesh.positions[vertex]), 0, 1e-6);
+            const glm::vec3 at = found.mesh.positions[vertex] - mesh.positions[t.x];
+            const float twice = a.x * b.y - a.y * b.x;
+            const float y = (at.x * b.y - at.y * b.x) / twice;
+            const float z = (a.x * at.y - a.y * at.x) / twice;
+            const glm::vec4 color =
+                (1 - y - z) * mesh.colors[t.x] + y * mesh.colors[t.y] + z * mesh.colors[t.z];
             EXPECT_NEAR(glm::length(color - found.mesh.colors[vertex]), 0, 1e-5);
             EXPECT_NEAR(glm::length(found.mesh.normals[vertex]), 1, 1e-5);
             EXPECT_NEAR(found.mesh.uvs[vertex].x, found.mesh.positions[vertex].x, 1e-6);
@@ -190,6 +188,53 @@ TEST(MeshCutting, TrianglesThatShowOnePlaceAreThereOrNot) {
     EXPECT_TRUE(none.mesh.triangles.empty());
     mesh.uvs = {{0.4, 0.5}, {0.5, 0.5}, {0.6, 0.5}, {0.45, 0.5}};  // a line
     EXPECT_EQ(cut(mesh, leaf(texture)).mesh.triangles.size(), 2u);
+}
+
+TEST(MeshCutting, TrianglesThatShowALineWereThereOrNot) {
+    // Both triangles show the picture's middle row from left to right, the disk's 0.6 of it.
+    Mesh mesh = card(2);
+    for (glm::vec2& uv : mesh.uvs)
+        uv.y = 0.5;
+    for (const TextureExtension extension : {TextureExtension::Repeat, TextureExtension::Mirror}) {
+        Texture texture = disk();
+        texture.extension = extension;
+        const CutMesh found = cut(mesh, leaf(texture));
+        EXPECT_NEAR(surface_area(found.mesh), 0.6, 0.01);
+        for (const glm::vec2& uv : found.mesh.uvs)
+            EXPECT_FLOAT_EQ(uv.y, 0.5f);
+    }
+    // What is half clear keeps all that is not, though its middle is.
+    const Texture rings = alpha_of(64, [](double u, double v) {
+        return 0.7 - 5 * std::abs(std::hypot(u - 0.5, v - 0.5) - 0.25);
+    });
+    const double left = surface_area(cut(mesh, leaf(rings)).mesh);
+    EXPECT_GT(left, 0.5);
+    EXPECT_LT(left, 0.95);
+}
+
+TEST(MeshCutting, AThinTriangleOverManyPicturesTookTheSquareOfTheirNumber) {
+    const Texture dots = alpha_of(512, [](double u, double v) {
+        return 0.5 + 8 -
+               512 *
+                   std::hypot(std::fmod(u, 1.0 / 16) - 1.0 / 32, std::fmod(v, 1.0 / 16) - 1.0 / 32);
+    });
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    mesh.uvs = {{0.1, 0.2}, {170.1, 170.4}, {170.15, 170.5}};
+    const CutMesh found = cut(mesh, leaf(dots));
+    ASSERT_TRUE(found.any);
+    EXPECT_NEAR(surface_area(found.mesh), dots.picture->mean.w / 2, 0.02);
+
+    const Material material = leaf(disk());
+    MaskOutlines outlines;
+    image::SeenTexels seen = image::unseen_texels(64, 64);
+    std::fill(seen.blocks.begin(), seen.blocks.end(), uint8_t{1});
+    const MaskOutlinePtr outline = outlines.outline({material.alpha_texture, {}, seen, 1}, {});
+    const volatile int32_t cancel = 1;
+    const Job job(&cancel, nullptr, nullptr);
+    TriangleCutter cutter(*outline, material.alpha_texture, job);
+    EXPECT_THROW(cutter.cut({{0, 0}, {170, 170}, {170, 171}}, 1000), Error);
 }
 
 TEST(MeshCutting, AFullMaskIsOpaqueAsItIs) {
@@ -372,10 +417,10 @@ TEST(MeshCutting, AnExportOutlinesAPictureOnce) {
     const Texture texture = disk();
     image::SeenTexels seen = image::unseen_texels(64, 64);
     std::fill(seen.blocks.begin(), seen.blocks.end(), uint8_t{1});
-    const MaskOutlinePtr first = outlines.outline({texture, {}, seen, 1});
+    const MaskOutlinePtr first = outlines.outline({texture, {}, seen, 1}, {});
     ASSERT_NE(first, nullptr);
-    EXPECT_EQ(outlines.outline({texture, {}, seen, 1.2}), first);
-    EXPECT_NE(outlines.outline({texture, {}, seen, 4}), first);
+    EXPECT_EQ(outlines.outline({texture, {}, seen, 1.2}, {}), first);
+    EXPECT_NE(outlines.outline({texture, {}, seen, 4}, {}), first);
     EXPECT_EQ(outlines.texels(texture), outlines.texels(texture));
 }
 
