@@ -238,11 +238,13 @@ std::vector<std::string> arguments_of(const RunOptions& options, const std::stri
     return out;
 }
 
-/// `live`: the picture that is drawn into; null: only messages tell how far it is.
 /// What may have ended POV-Ray by a signal: the object that the scene names for its clear surfaces.
 std::string likely_reason(const std::filesystem::path& folder, int signal) {
     if (signal == SIGKILL)
         return "; the system does that when memory is short";
+    // Law: what a stack that is too small ends by.
+    if (signal != SIGSEGV && signal != SIGBUS)
+        return "";
     std::ifstream scene(folder / "scene.pov");
     std::string line;
     while (std::getline(scene, line)) {
@@ -260,6 +262,7 @@ std::string likely_reason(const std::filesystem::path& folder, int signal) {
     return "";
 }
 
+/// `live`: the picture that is drawn into; null: only messages tell how far it is.
 void show_progress(const PovrayMessages& messages, const LivePicture* live, const Job& job) {
     if (messages.pixels == 0) {
         // The number of tokens to parse is not known: half of this part is a million of them.

@@ -175,6 +175,11 @@ TEST(PovrayRunner, AProgramThatDiesOrMakesNoPictureIsAFailure) {
     EXPECT_TRUE(says(with("exit 0\n"), "without a picture"));
     EXPECT_TRUE(says(with("kill -KILL $$\n"), "signal 9 (KILL"));
     EXPECT_TRUE(says(with("kill -40 $$\n"), "signal 40 (no name)"));
+    // Only a stack that is too small is what clear surfaces do.
+    std::ofstream(folder / "scene.pov") << kClearObject << "200 bush\n";
+    EXPECT_TRUE(says(with("kill -SEGV $$\n"), "'bush' has about 200"));
+    EXPECT_FALSE(says(with("kill -TERM $$\n"), "bush"));
+    EXPECT_FALSE(says(with("kill -FPE $$\n"), "bush"));
     EXPECT_TRUE(says(with("echo 'Parse Error: of mine' >&2; exit 1\n"), "of mine"));
     EXPECT_EQ(with("yes | head -c 3000000; exit 1\n").status, Status::PovrayFailed);
     EXPECT_EQ(read_file(folder / "picture.exr"), "old");
