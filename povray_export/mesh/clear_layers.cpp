@@ -9,8 +9,10 @@ double clear_layers(const Mesh& mesh, const std::function<bool(size_t)>& counts)
     double area = 0;
     Box3 box;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        if (!counts(i))
+            continue;
         const double twice = glm::length(area_vector(mesh, i));
-        if (!(twice > 0) || !std::isfinite(twice) || !counts(i))
+        if (!(twice > 0) || !std::isfinite(twice))
             continue;
         area += twice / 2;
         for (int k = 0; k < 3; ++k)

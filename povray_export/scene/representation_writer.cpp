@@ -110,11 +110,20 @@ private:
         // The layers that are worth a word.
         // Taste: eight such meshes behind each other may be too many.
         constexpr double kMany = kMostLayers / 8;
+        std::vector<uint8_t> clear;  // by slot
+        for (size_t slot = 0; slot < representation_.materials.size(); ++slot) {
+            const uint32_t material = representation_.materials[slot];
+            const bool cut_out = slot < cut.opaque.size() && cut.opaque[slot] != 0;
+            clear.push_back(!cut_out && material < model_.materials.size() &&
+                                    lets_through(model_.materials[material])
+                                ? 1
+                                : 0);
+        }
+        if (std::find(clear.begin(), clear.end(), uint8_t{1}) == clear.end())
+            return "";
         const double layers = clear_layers(shown, [&](size_t i) {
             const uint16_t slot = shown.slot(i);
-            return slot < representation_.materials.size() &&
-                   (slot >= cut.opaque.size() || cut.opaque[slot] == 0) &&
-                   lets_through(model_.materials[representation_.materials[slot]]);
+            return slot < clear.size() && clear[slot] != 0;
         });
         if (!(layers >= kMany))
             return "";
