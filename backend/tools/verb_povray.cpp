@@ -188,7 +188,8 @@ int run_povray(const CommandArguments& arguments) {
                                        {"lamps", exported.lamps},
                                        {"lights_each", exported.lights_each},
                                        {"unseen", exported.unseen},
-                                       {"sky_copies", exported.sky_copies}}});
+                                       {"sky_copies", exported.sky_copies},
+                                       {"cut_triangles", exported.cut_triangles}}});
     report.push_back({"povray", Fields{{"parse_cpu_s", rendered.parse_cpu_s},
                                        {"trace_cpu_s", rendered.trace_cpu_s},
                                        {"wall_s", rendered.wall_s},

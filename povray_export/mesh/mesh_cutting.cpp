@@ -43,6 +43,7 @@ struct CutSlot {
     std::vector<uint32_t> doubles;  // the other sides of some of them, which are left out
     double tolerance = 1;           // in texels
     size_t most = 0;                // triangles that it may become
+    size_t expected = 0;            // triangles that it becomes, about
     size_t hull_corners = 0;        // corners of what it may be trimmed by
     MaskOutlinePtr outline;
     bool full = false;     // nothing of it is clear: it is opaque without any cut
@@ -61,11 +62,22 @@ public:
           outlines_(outlines),
           job_(job) {}
 
-    bool cuts_by_outline() {
+    CutForecast forecast() {
+        CutForecast out;
         find_slots();
-        return std::any_of(slots_.begin(), slots_.end(), [&](auto& slot) {
-            return find_outline(slot.second) && slot.second.opaque && slot.second.outline;
-        });
+        for (auto& [number, slot] : slots_) {
+            if (!find_outline(slot))
+                continue;
+            out.by_outline = out.by_outline || (slot.opaque && slot.outline);
+            out.triangles += slot.expected;
+        }
+        return out;
+    }
+
+    bool by_texel() {
+        collect_slots();
+        return std::all_of(slots_.begin(), slots_.end(),
+                           [&](const auto& slot) { return tolerance_of(slot.second) <= 1; });
     }
 
     CutMesh run() {
@@ -105,8 +117,8 @@ private:
         return &model_.materials[index];
     }
 
-    /// Finds the slots whose materials may be masks, and how finely each is seen.
-    void find_slots() {
+    /// Collects the slots whose materials may be masks.
+    void collect_slots() {
         if (!options_.textures || !options_.uvs || mesh_.uvs.empty())
             return;
         for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
@@ -122,6 +134,28 @@ private:
             slots_[number].material = material;
             slots_[number].triangles.push_back(static_cast<uint32_t>(i));
         }
+    }
+
+    /// The texels by which the outline of a slot's mask may be off.
+    double tolerance_of(const CutSlot& slot) const {
+        // The share of the area that may see its outline less finely than asked.
+        // Taste: a larger value cuts more coarsely for single stretched triangles.
+        constexpr double kSpared = 0.001;
+        if (!options_.outline)
+            return 1;
+        const Texture& texture = slot.material->alpha_texture;
+        const std::array<double, 6>& m = texture.to_picture;
+        const double uv =
+            outline_error(*options_.outline) / metres_of_uv(mesh_, slot.triangles, kSpared);
+        return uv * std::min(std::hypot(m[0], m[1]) * texture.picture->width,
+                             std::hypot(m[3], m[4]) * texture.picture->height);
+    }
+
+    /// Finds the slots that may be cut, and how finely each is seen.
+    void find_slots() {
+        collect_slots();
+        if (slots_.empty())
+            return;
         layers_ = clear_layers(mesh_, [&](size_t i) {
             const Material* material = material_of(mesh_.slot(i));
             return material != nullptr && lets_through(*material);
@@ -130,17 +164,7 @@ private:
             at = leave_out_doubles(at->second) ? std::next(at) : slots_.erase(at);
         for (auto& [number, slot] : slots_) {
             slot.painted = painted_clear(slot);
-            if (!options_.outline)
-                continue;
-            // The share of the area that may see its outline less finely than asked.
-            // Taste: a larger value cuts more coarsely for single stretched triangles.
-            constexpr double kSpared = 0.001;
-            const Texture& texture = slot.material->alpha_texture;
-            const std::array<double, 6>& m = texture.to_picture;
-            const double uv =
-                outline_error(*options_.outline) / metres_of_uv(mesh_, slot.triangles, kSpared);
-            slot.tolerance = uv * std::min(std::hypot(m[0], m[1]) * texture.picture->width,
-                                           std::hypot(m[3], m[4]) * texture.picture->height);
+            slot.tolerance = tolerance_of(slot);
         }
     }
 
@@ -233,6 +257,8 @@ private:
         if (count.seen == 0)
             return false;
         slot.most = std::clamp(kMostEach * slot.triangles.size(), kMostOfFew, kMostOfMany);
+        if (options_.most_cut)
+            slot.most = std::min(slot.most, (size_t{1} << *options_.most_cut) / slots_.size());
         // An outline is about as many triangles as corners, once for each picture, and the sides of
         // the mesh's triangles cut those.
         // Fitted: to pine branches of 28 to 206 triangles on 2,700: 1.3 to 1.4 times as many.
@@ -254,6 +280,11 @@ private:
         }
         if (!slot.opaque)
             slot.outline = outlines_.hull(texture, slot.hull_corners, job_);
+        slot.expected = slot.triangles.size();
+        if (slot.outline)
+            slot.expected = static_cast<size_t>(
+                std::min(kMore * pictures * static_cast<double>(slot.outline->inside.points.size()),
+                         static_cast<double>(slot.most)));
         return slot.full || slot.outline;
     }
 
@@ -405,9 +436,16 @@ CutMesh cut_masks(const Model& model, const Representation& representation,
     return MeshCutter(model, representation, options, outlines, job).run();
 }
 
-bool cuts_by_outline(const Model& model, const Representation& representation,
-                     const RepresentationOptions& options, MaskOutlines& outlines, const Job& job) {
-    return MeshCutter(model, representation, options, outlines, job).cuts_by_outline();
+CutForecast cut_forecast(const Model& model, const Representation& representation,
+                         const RepresentationOptions& options, MaskOutlines& outlines,
+                         const Job& job) {
+    return MeshCutter(model, representation, options, outlines, job).forecast();
+}
+
+bool outlined_by_texel(const Model& model, const Representation& representation,
+                       const RepresentationOptions& options, MaskOutlines& outlines,
+                       const Job& job) {
+    return MeshCutter(model, representation, options, outlines, job).by_texel();
 }
 
 }  // namespace lodestone::povray

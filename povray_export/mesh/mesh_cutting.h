@@ -29,10 +29,21 @@ struct CutMesh {
 CutMesh cut_masks(const Model& model, const Representation& representation,
                   const RepresentationOptions& options, MaskOutlines& outlines, const Job& job);
 
-/// Whether `outline` of the options matters: some mask is cut by it, as far as can be told before
-/// cutting. Throws as cut_masks().
-bool cuts_by_outline(const Model& model, const Representation& representation,
-                     const RepresentationOptions& options, MaskOutlines& outlines, const Job& job);
+/// What can be told of cut_masks() before cutting.
+struct CutForecast {
+    bool by_outline = false;  // `outline` of the options matters: some mask is cut by it
+    uint64_t triangles = 0;   // about what all masks become, or are trimmed to
+};
+/// Throws as cut_masks().
+CutForecast cut_forecast(const Model& model, const Representation& representation,
+                         const RepresentationOptions& options, MaskOutlines& outlines,
+                         const Job& job);
+
+/// Whether no mask is outlined more coarsely than by its texels: then a smaller `outline` of the
+/// options changes nothing.
+bool outlined_by_texel(const Model& model, const Representation& representation,
+                       const RepresentationOptions& options, MaskOutlines& outlines,
+                       const Job& job);
 
 /// Whether a material's alpha may be a mask, by its fields alone.
 bool may_be_mask(const Material& material);

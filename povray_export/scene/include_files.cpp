@@ -2,9 +2,9 @@
 #include "povray_export/scene/include_files.h"
 
 #include "base/clock.h"
+#include "base/error.h"
 #include "base/files.h"
 #include "base/parallel.h"
-#include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/texture/surface_finish.h"
 #include "povray_export/texture/texture_writer.h"
 
@@ -76,20 +76,25 @@ void IncludeFiles::note_texel(size_t index, double texel) {
     files_[index].texel = std::min(files_[index].texel, texel);
 }
 
-void IncludeFiles::merge_uncut(const Job& job) {
-    std::vector<uint8_t> uncut(files_.size(), 0);
-    parallel_for(files_.size(), [&](size_t i) {
-        IncludeFile& include = files_[i];
-        uncut[i] = include.options.outline && !cuts_by_outline(model_, *include.representation,
-                                                               include.options, outlines_, job)
-                       ? 1
-                       : 0;
-    });
+size_t IncludeFiles::own(size_t index) const {
+    while (files_[index].same)
+        index = *files_[index].same;
+    return index;
+}
+
+uint64_t IncludeFiles::triangles() const {
+    uint64_t sum = 0;
+    for (const IncludeFile& include : files_)
+        sum += include.same ? 0 : include.representation->summary.cost.triangles;
+    return sum;
+}
+
+/// Lets one file stand for all of the same options.
+void IncludeFiles::merge() {
     std::unordered_map<Hash, size_t> known;
     for (size_t i = 0; i < files_.size(); ++i) {
-        if (uncut[i] == 0)
+        if (files_[i].same)
             continue;
-        files_[i].options.outline.reset();
         const auto [at, fresh] =
             known.try_emplace(file_hash(*files_[i].representation, files_[i].options), i);
         if (fresh)
@@ -99,8 +104,58 @@ void IncludeFiles::merge_uncut(const Job& job) {
     }
 }
 
-void IncludeFiles::name(const Job& job) {
-    merge_uncut(job);
+/// What is to be cut of a file, which takes long to find: it is kept.
+CutForecast IncludeFiles::forecast(Hash name, const IncludeFile& include, const Job& job) {
+    const std::filesystem::path path = folder_ / "r" / (hex16(name) + ".cut");
+    CutForecast out;
+    std::ifstream kept(path);
+    if (kept >> out.by_outline >> out.triangles)
+        return out;
+    out = cut_forecast(model_, *include.representation, include.options, outlines_, job);
+    write_file(path, text(out.by_outline ? 1 : 0, ' ', out.triangles, '\n'));
+    return out;
+}
+
+/// Lets masks of all files together become no more than `most` triangles, or each but one of them.
+void IncludeFiles::limit_cut(uint64_t most) {
+    // Law: no mask becomes more than 2^18, and a material has one.
+    int step = 62;
+    const auto sum = [&] {
+        uint64_t out = 0;
+        for (const IncludeFile& include : files_)
+            out += include.same ? 0 : std::min(include.cut_triangles, uint64_t{1} << step);
+        return out;
+    };
+    while (step > 0 && sum() > most)
+        --step;
+    for (IncludeFile& include : files_) {
+        if (include.same || include.cut_triangles <= uint64_t{1} << step)
+            continue;
+        include.options.most_cut = step;
+        include.cut_triangles = uint64_t{1} << step;
+    }
+}
+
+void IncludeFiles::name(uint64_t most, const Job& job) {
+    parallel_for(files_.size(), [&](size_t i) {
+        IncludeFile& include = files_[i];
+        if (include.options.outline &&
+            outlined_by_texel(model_, *include.representation, include.options, outlines_, job))
+            include.options.outline = outline_step(0);
+    });
+    merge();
+    parallel_for(files_.size(), [&](size_t i) {
+        IncludeFile& include = files_[i];
+        if (include.same || !include.options.outline)
+            return;
+        include.forecast = file_hash(*include.representation, include.options);
+        const CutForecast found = forecast(*include.forecast, include, job);
+        include.cut_triangles = found.triangles;
+        if (!found.by_outline)
+            include.options.outline.reset();
+    });
+    merge();
+    limit_cut(most);
     for (IncludeFile& include : files_) {
         if (include.pictured)
             include.options.texel = exponent_of(include.texel);
@@ -166,6 +221,8 @@ void IncludeFiles::write(const Job& job) {
 std::string IncludeFiles::statements() const {
     std::string out;
     for (const IncludeFile& include : files_) {
+        if (include.forecast)
+            out.append("// r/").append(hex16(*include.forecast)).append(".cut\n");
         if (include.drawn)
             out.append("#include \"r/").append(hex16(include.hash)).append(".inc\"\n");
     }

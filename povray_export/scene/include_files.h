@@ -2,6 +2,7 @@
 // Include files: one file for every distinct representation that a scene shows, and its pictures.
 #pragma once
 
+#include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/scene/representation_writer.h"
 
 #include <filesystem>
@@ -17,8 +18,10 @@ struct IncludeFile {
     Hash hash = 0;
     std::string identifier;
     RepresentationOptions options = {};
-    std::optional<size_t> same = {};  // the file that stands for this one
-    bool pictured = false;            // true: it shows pictures, as fine as they are seen
+    std::optional<size_t> same = {};    // the file that stands for this one
+    std::optional<Hash> forecast = {};  // the name of the file of what is cut
+    uint64_t cut_triangles = 0;         // about what its masks become
+    bool pictured = false;              // true: it shows pictures, as fine as they are seen
     double texel = std::numeric_limits<double>::infinity();  // at its nearest use
     uint64_t bytes = 0;
     double cpu_s = 0;
@@ -43,24 +46,30 @@ public:
     /// frame.
     void note_texel(size_t index, double texel);
     /// Gives the files their names, once all are added and seen. Files that would only differ in how
-    /// masks are cut, while these are not, become one.
-    void name(const Job& job);
+    /// masks are cut, while these are not or not differently, become one. Where masks of all files
+    /// would become more than `most` triangles, those that become most are cut no more, but for what
+    /// is clear around them. Files beside r/*.inc keep what is to be cut for the next export.
+    void name(uint64_t most, const Job& job);
     /// Writes r/<16 hex>.inc and the pictures that are not there yet. Throws Error(Io),
     /// Error(Cancelled).
     void write(const Job& job);
 
-    const IncludeFile& at(size_t index) const { return files_[files_[index].same.value_or(index)]; }
-    /// Whether the file stands for itself.
-    bool is_own(size_t index) const { return !files_[index].same; }
+    /// The file that stands for this one, which may be itself.
+    size_t own(size_t index) const;
+    const IncludeFile& at(size_t index) const { return files_[own(index)]; }
+    /// The triangles of all files, masks as they are before they are cut.
+    uint64_t triangles() const;
     size_t size() const { return files_.size(); }
-    /// The text that includes all files.
+    /// The text that includes all files, and names those of what is cut.
     std::string statements() const;
     PictureFolder::PictureTotals pictures() const { return pictures_.totals(); }
     /// Whether any file bends light.
     bool refracts() const;
 
 private:
-    void merge_uncut(const Job& job);
+    void merge();
+    CutForecast forecast(Hash name, const IncludeFile& include, const Job& job);
+    void limit_cut(uint64_t most);
     /// Whether a mesh with texture coordinates shows a material that `is` so.
     bool shows(const Representation& representation, const RepresentationOptions& options,
                bool (*is)(const Material&)) const;

@@ -176,6 +176,8 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
         hasher.value(*options.texel);
     if (options.outline)
         hasher.text("outline").value(*options.outline);
+    if (options.most_cut)
+        hasher.text("most cut").value(*options.most_cut);
     if (options.sky)
         hasher.text("sky").value(options.sky->hash);
     return hasher.result();

@@ -23,6 +23,8 @@ struct RepresentationOptions {
     /// The metres, outline_error() in that frame, by which the outline of a mask may be off where
     /// that is more than a texel.
     std::optional<int> outline = {};
+    /// The triangles, 2^most_cut, that its masks may become together; none: as many as pay.
+    std::optional<int> most_cut = {};
     SkyLightPtr sky = {};  // the sky's light on it; null: all of it
 };
 

@@ -97,7 +97,7 @@ public:
         std::set<Hash> shown;
         for (size_t i = 0; i < includes_.size(); ++i) {
             const IncludeFile& include = includes_.at(i);
-            if (!includes_.is_own(i))
+            if (includes_.own(i) != i)
                 continue;
             report.cpu_s += include.cpu_s;
             if (!include.drawn)
@@ -105,6 +105,7 @@ public:
             report.bytes += include.bytes;
             ++report.files;
             ++report.representations;
+            report.cut_triangles += include.cut_triangles;
             if (include.options.sky && !shown.insert(include.representation->summary.hash).second)
                 ++report.sky_copies;
             report.written += include.written ? 1u : 0u;
@@ -200,7 +201,7 @@ private:
         const double pixel = pixel_of(node, representation, use.world);
         use.file = includes_.add(
             representation,
-            {textures, options_.uvs, std::nullopt, std::nullopt, textures ? sky : nullptr},
+            {.textures = textures, .uvs = options_.uvs, .sky = textures ? sky : nullptr},
             std::max(view_.pixel_error, kUnseen) * pixel);
         uses_.push_back(use);
         if (includes_.at(use.file).pictured)
@@ -236,7 +237,24 @@ private:
                         false, nullptr);
         }
         collect_own();
-        includes_.name(job_);
+        includes_.name(most_cut_triangles(), job_);
+    }
+
+    /// The triangles that masks of all files together may become.
+    uint64_t most_cut_triangles() const {
+        // Measured: the bytes of a triangle of a cut-out mask in POV-Ray.
+        constexpr uint64_t kBytes = 245;
+        // The part of a budget that they may take beyond it.
+        // Taste: a larger value cuts more masks, for memory nobody wanted to give.
+        constexpr uint64_t kPart = 8;
+        // What they may be without a budget, and for each triangle that is there already.
+        // Taste: 250 MB, and five times what the scene takes; a larger value cuts more masks.
+        constexpr uint64_t kFew = uint64_t{1} << 20u;
+        constexpr uint64_t kEach = 4;
+        if (options_.budget == 0)
+            return kFew + kEach * includes_.triangles();
+        return (options_.budget - std::min(options_.budget, cut_.bytes) + options_.budget / kPart) /
+               kBytes;
     }
 
     /// The size of a pixel at one occurrence, in metres of its own frame.
@@ -252,7 +270,8 @@ private:
     void name_problems() {
         std::vector<uint8_t> named(includes_.size(), 0);
         for (const OccurrenceUse& use : uses_) {
-            if (!includes_.at(use.file).bumps_left_out || named[use.file]++ != 0)
+            const size_t file = includes_.own(use.file);
+            if (!includes_.at(file).bumps_left_out || named[file]++ != 0)
                 continue;
             problems_.push_back({called(use.node), Severity::Warning, "bump_not_flat",
                                  "is shown without its bumps: POV-Ray shows them on flat faces"});

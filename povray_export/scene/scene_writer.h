@@ -37,6 +37,9 @@ struct ExportOptions {
     std::filesystem::path bakes{};
     /// Makes the finest level of everything resident, where the sky's light must be found.
     std::function<void()> load_finest{};
+    /// The bytes of POV-Ray's memory that were asked for; 0: no limit. The cut is within them, and
+    /// so are the masks that are cut out, but for an eighth.
+    uint64_t budget = 0;
     /// Texture coordinates are written where a texture uses them; false: textures are their means.
     bool uvs = true;
 };
@@ -52,7 +55,8 @@ struct ExportReport {
     uint64_t lamps = 0;        // lights but suns
     double lights_each = 0;   // lamps, and lights for several, that light a seen point, in the mean
     uint64_t sky_copies = 0;  // representations more, for copies under other parts of the sky
-    double cpu_s = 0;         // sum over all threads
+    uint64_t cut_triangles = 0;  // about what masks that are cut out become
+    double cpu_s = 0;            // sum over all threads
 };
 
 /// Writes scene.pov, scene.ini, r/<16 hex>.inc, one for every distinct representation, and the

@@ -42,6 +42,15 @@ class UsedFiles(unittest.TestCase):
         remove_others(self.folder, used)
         self.assertEqual(files(self.folder), [f"i/{SHAPE}.png", f"r/{SHAPE}.inc"])
 
+    def test_what_is_kept_beside_representations_is_used(self):
+        write_scene(self.folder, SHAPE)
+        for name in (SHAPE, OTHER):
+            (self.folder / "r" / f"{name}.cut").write_text("1 40\n")
+        with open(self.folder / "scene.pov", "a") as scene:
+            scene.write(f"// r/{OTHER}.cut\n")
+        remove_others(self.folder, used_files(self.folder))
+        self.assertEqual(files(self.folder), [f"r/{OTHER}.cut", f"r/{SHAPE}.inc"])
+
     def test_a_picture_of_the_sky_is_used(self):
         write_scene(self.folder, SHAPE)
         (self.folder / "i" / f"{OTHER}.png").write_text("sky")

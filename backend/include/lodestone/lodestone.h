@@ -1154,6 +1154,8 @@ typedef struct lds_export_report {
     uint64_t unseen;    /* occurrences that the camera does not see, but some class of rays meets */
     uint64_t sky_copies; /* representations written once more, for copies that see another share of
                             the sky */
+    uint64_t cut_triangles; /* about how many triangles masks that are cut out become, beyond those
+                               of the cut; within its memory budget but for an eighth */
 } lds_export_report;
 /* Writes scene.pov, scene.ini and r/<16 hex>.inc into folder, with the model's lights and world. */
 LDS_API lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,

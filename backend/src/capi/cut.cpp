@@ -77,6 +77,7 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
         View made_for = view_of(view, model);
         auto made = std::make_unique<lds_cut>();
         made->generation = model->generation;
+        made->budget = given.bytes;
         made->table = model->table_for(made_for.kinds);
         choose::BudgetedCut found = choose::fit_cut_to_budget(
             *made->table, made_for, {given.triangles, given.bytes}, progress);

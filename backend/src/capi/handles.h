@@ -55,6 +55,7 @@ struct lds_cut {
     std::vector<lodestone::choose::RayCut> rays;  // those of the classes asked for
     lodestone::choose::ResidentSize resident;     // for the camera and these
     lodestone::View view;                         // it was made for this, with the threshold found
+    uint64_t budget = 0;                          // the bytes it was made to fit; 0: any
     uint32_t generation = 0;                      // that of the model it was made from
     uint64_t structured = 0;                      // the model's then
     std::shared_ptr<const lodestone::choose::ChoiceTable> table;  // it was chosen from this one

@@ -135,6 +135,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         if (std::isnan(given.light_error))
             fail(Status::InvalidArgument, "options.light_error is not a number");
         wanted.rays = cut->rays;
+        wanted.budget = cut->budget;
         if (given.bake_folder != nullptr)
             wanted.bakes = given.bake_folder;
         wanted.load_finest = [model] { load_finest(*model); };
@@ -151,6 +152,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.lights_each = report.lights_each;
         out.unseen = report.unseen;
         out.sky_copies = report.sky_copies;
+        out.cut_triangles = report.cut_triangles;
         hand_out(out_report, out, "out_report");
     });
 }

@@ -231,13 +231,15 @@ def make_identities(
 
 
 def used_files(folder: Path) -> set[str]:
-    """The representations that the scene in a folder includes, and all pictures that are shown:
-    r/..., i/..."""
+    """The representations that the scene in a folder includes, what is kept beside them, and all
+    pictures that are shown: r/..., i/..."""
     found = set()
     with open(folder / "scene.pov", encoding="utf-8", errors="replace") as lines:
         for line in lines:
             if line.startswith('#include "r/'):
                 found.add(line[len('#include "') :].rstrip().rstrip('"'))
+            elif line.startswith("// r/"):  # what is kept beside them for the next time
+                found.add(line[len("// ") :].rstrip())
             found.update(_PICTURE_NAME.findall(line))
     for name in [name for name in found if name.startswith("r/")]:
         with contextlib.suppress(OSError):
@@ -255,7 +257,7 @@ def _pictures_of(representation: Path) -> set[str]:
 def remove_others(folder: Path, used: set[str]) -> None:
     """Removes the representations and pictures that no scene of the frame used: what deforms is
     written anew in every frame, and a long animation must not fill the disk."""
-    for path in [*(folder / "r").glob("*.inc"), *(folder / "i").glob("*.*")]:
+    for path in [*(folder / "r").glob("*.*"), *(folder / "i").glob("*.*")]:
         if f"{path.parent.name}/{path.name}" not in used:
             path.unlink(missing_ok=True)
 
