@@ -2,6 +2,7 @@
 #include "povray_export/lamp/light_writer.h"
 
 #include "base/maths.h"
+#include "light/sun_plan.h"
 #include "povray_export/scene/povray_number.h"
 
 #include <algorithm>
@@ -23,9 +24,6 @@ constexpr double kWideSun = 0.2;
 /// The rays along an edge.
 /// Taste: a larger value makes the softest penumbrae smoother, for time that grows with its square.
 constexpr int kMostRays = 129;
-/// The half angle in radians of a sun whose penumbra is a few pixels.
-/// Taste: twice the real sun's; a larger value casts fewer first rays for more suns.
-constexpr double kNarrowSun = 0.009;
 
 /// A grid of rays along both edges: 2^n + 1, for POV-Ray refines by halving.
 struct RayGrid {
@@ -59,11 +57,8 @@ public:
         out_ += " parallel point_at ";
         append_vector(out_, bound.center, 15);
         if (soft_ && half > 1e-4) {
-            RayGrid grid{17, 17, start_};
-            if (half > kWideSun)
-                ++grid.start;
-            else if (half < kNarrowSun)
-                grid.u = grid.v = 5;
+            const int finest = light::finest_sun_rays(light_, 17);
+            RayGrid grid{finest, finest, half > kWideSun ? start_ + 1 : start_};
             const glm::dvec3 u = perpendicular(way);
             const double width = 2 * r * reach;
             append_grid(u * width, glm::cross(way, u) * width, grid);

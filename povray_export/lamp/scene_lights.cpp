@@ -10,14 +10,11 @@
 namespace lodestone::povray {
 
 void SceneLights::append(std::string& out, Light light) const {
-    // The pixels of the narrowest penumbra that shows.
-    // Taste: antialiasing shows no less; a larger value draws more shadows sharp.
-    constexpr double kLeast = 0.25;
     // The factor on an area's edges, which still say where it shines.
     // Taste: any size that no pixel can tell will do.
     constexpr double kPoint = 1e-7;
     const double widest = light::widest_penumbra(light, view_, occluders_);
-    const double step = std::max(kLeast, shading_.shadow_error);
+    const double step = std::max(light::kLeastPenumbra, shading_.shadow_error);
     if (widest <= step) {
         light.angle = light.radius = 0;
         light.edge_u *= kPoint;

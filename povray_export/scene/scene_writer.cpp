@@ -354,9 +354,10 @@ private:
         std::vector<Light> suns = sky_.lights;
         suns.insert(suns.end(), model_.lights.begin(), model_.lights.end());
         demands.suns = suns;
+        demands.measured_suns = options_.antialiasing != Antialiasing::Reference;
         light::LightPlan plan = light::plan_lights(model_, renderer_surfaces(model_), drawn, view_,
                                                    demands, problems_, job_);
-        if (!plan.empty())
+        if (plan.lamps)
             report_.lights_each = plan.lights_each;
         name_slow_lamps(plan);
         return plan;
@@ -464,17 +465,23 @@ private:
         std::string out = head_text(head, shading_, sky_);
         append_camera(out, camera, options_.antialiasing, problems_);
         if (lit()) {
-            for (const Light& light : model_.lights) {
-                if (plan.empty() || !light::is_lamp(light))
+            for (uint32_t i = 0; i < model_.lights.size(); ++i) {
+                const Light& light = model_.lights[i];
+                const bool planned =
+                    light::is_lamp(light)
+                        ? plan.lamps
+                        : std::find(plan.suns.begin(), plan.suns.end(), i) != plan.suns.end();
+                if (!planned)
                     scene_lights.append(out, light);
             }
-            if (!plan.empty()) {
+            if (plan.lamps) {
                 out += "// Of ";
                 append_count(out, report_.lamps);
                 out += " lamps a point is lit by ";
                 append_number(out, plan.lights_each, 3);
-                out += " lights on average, some of which stand for several\n" + lights;
+                out += " lights on average, some of which stand for several\n";
             }
+            out += lights;
             if (!sky_.lights.empty())
                 out += "// The rest of the environment's light\n";
             for (const Light& light : sky_.lights)

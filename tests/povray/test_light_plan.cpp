@@ -308,6 +308,36 @@ TEST_F(LightPlanTest, SunsLightEverythingAndNonsenseHurtsNothing) {
     EXPECT_NO_THROW(plan_lights(builder.model, {}, {}, view, {}, problems));
 }
 
+TEST_F(LightPlanTest, ASunIsWrittenOnceAndAsFinelyAsItsShadowsNeed) {
+    Builder builder;
+    const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({0.8, 0.8, 0.8})});
+    builder.place(box, box_at({-40, -40, -1}, {40, 40, 0}), "ground");
+    builder.place(box, box_at({10, 1, 0}, {11, 4, 1}), "stone");
+    builder.place(box, box_at({200, 0, 0}, {201, 1, 90}), "tower far away");
+    Light sun;
+    sun.kind = LightKind::Sun;
+    sun.direction = glm::normalize(glm::dvec3(0.3, 0, -1));
+    sun.angle = 0.02;
+    builder.model.lights = {sun};
+    const Model& model = builder.finish();
+    Problems problems;
+    ExportOptions options = into("sun");
+    options.antialiasing = Antialiasing::Final;
+    const auto text = [&] {
+        scenes::write(model, from_above(1), options, problems);
+        return read_file(options.folder / "scene.pov");
+    };
+    const std::string sharp = text();
+    EXPECT_EQ(count_of(sharp, "parallel point_at"), 1u);
+    EXPECT_EQ(count_of(sharp, "light_source"), 2u);  // declared, and used
+    EXPECT_EQ(count_of(sharp, "light_group"), 0u);
+    EXPECT_EQ(count_of(sharp, "area_light"), 0u);
+    // Nobody looked: as wide as a shadow could be.
+    options.antialiasing = Antialiasing::Reference;
+    EXPECT_EQ(count_of(text(), "area_light"), 1u);
+    EXPECT_TRUE(problems.empty());
+}
+
 TEST_F(PovrayRenderLights, ThePictureIsThatOfAllLampsAndNoRoomIsLitThroughAWall) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";

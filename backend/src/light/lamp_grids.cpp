@@ -16,9 +16,6 @@
 namespace lodestone::light {
 namespace {
 
-// The pixels of the narrowest penumbra that shows.
-// Taste: antialiasing shows no less; a larger value draws more shadows sharp.
-constexpr double kLeastPenumbra = 0.25;
 // The longer over the shorter edge of an area light above which its grid is longer, too.
 // Taste: 17 x 5 rays are about as many as 9 x 9.
 constexpr double kLong = 3;
@@ -38,15 +35,6 @@ double edge_ratio(const Light& light) {
     const double u = glm::length(light.edge_u);
     const double v = glm::length(light.edge_v);
     return std::max(u, v) / std::max(std::min(u, v), 1e-300);
-}
-
-/// The number of rays along an edge, as it can be drawn: 2^n + 1, for POV-Ray refines by halving,
-/// or 2.
-int grid_rays(double wanted, int most) {
-    int rays = 1;
-    while (rays < most && rays < wanted)
-        rays = rays < 3 ? rays + 1 : 2 * rays - 1;
-    return std::min(rays, most);
 }
 
 /// The steps of an 8-bit display that a light is worth in all the light of a point.
@@ -111,6 +99,13 @@ private:
 };
 
 }  // namespace
+
+int grid_rays(double wanted, int most) {
+    int rays = 1;
+    while (rays < most && rays < wanted)
+        rays = rays < 3 ? rays + 1 : 2 * rays - 1;
+    return std::min(rays, most);
+}
 
 LampGrid finest_grid(const Light& light, int rays) {
     if (!(extent_of(light) > 0) || rays <= 1 || !light.shadow)

@@ -24,6 +24,14 @@ struct GridDemands {
     double apart = 0;         // pixels between points; what lies between may be nearer to a lamp
 };
 
+/// The pixels of the narrowest penumbra that shows.
+/// Taste: antialiasing shows no less; a larger value draws more shadows sharp.
+inline constexpr double kLeastPenumbra = 0.25;
+
+/// The number of rays along an edge, as it can be drawn: 2^n + 1, for POV-Ray refines by halving,
+/// or 2; `most` at most.
+int grid_rays(double wanted, int most);
+
 /// The grid by which a light is sampled where nothing is known of what it lights.
 LampGrid finest_grid(const Light& light, int rays);
 

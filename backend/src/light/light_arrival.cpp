@@ -85,6 +85,13 @@ double extent_of(const Light& light) {
     return std::max(0.0, light.radius);
 }
 
+bool shines_as_sun(const Light& light) {
+    const glm::dvec3 energy = energy_of(light);
+    const double length = glm::length(light.direction);
+    return light.kind == LightKind::Sun && finite(energy) && length > 0 && std::isfinite(length) &&
+           std::min({energy.x, energy.y, energy.z}) >= 0;
+}
+
 bool is_lamp(const Light& light) {
     const glm::dvec3 energy = energy_of(light);
     if (light.kind == LightKind::Sun || !finite(energy) || !finite(light.position) ||

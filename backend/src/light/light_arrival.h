@@ -12,6 +12,9 @@ glm::dvec3 energy_of(const Light& light);
 /// The radius of the shining surface: 0 for a point without size; half the diagonal of an area.
 double extent_of(const Light& light);
 
+/// Whether a light is a sun that can be judged: finite, not taking light away.
+bool shines_as_sun(const Light& light);
+
 /// Whether a light is a lamp that can be judged: no sun, finite, shining, not taking light away.
 bool is_lamp(const Light& light);
 

@@ -6,6 +6,7 @@
 #include "light/light_regions.h"
 #include "light/lit_cells.h"
 #include "light/lit_points.h"
+#include "light/sun_plan.h"
 
 #include <algorithm>
 #include <map>
@@ -175,6 +176,7 @@ LightPlan plan_of(const RegionLights& regions, std::span<const LitPoint> points,
             plan = std::move(groups);
     }
     number_lights(regions.tree, plan);
+    plan.lamps = true;
     return plan;
 }
 
@@ -215,6 +217,7 @@ LightPlan strongest_plan(std::span<const Light> lights, size_t things, const Vie
         plan.shadow_rays += shadow_rays(lights[index], plan.groups[0].back().grid);
     }
     plan.lights_each = static_cast<double>(kMostUnchosen);
+    plan.lamps = true;
     for (uint32_t i = 0; i < things; ++i)
         plan.pieces.push_back({i, 0, {}});
     return plan;
@@ -227,64 +230,32 @@ double rays_to_all(std::span<const Light> lights, int rays) {
     return sum;
 }
 
-}  // namespace
-
-LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
-                      std::span<const DrawnThing> drawn, const View& view,
-                      const LightDemands& demands, Problems& problems, const Job& job) {
-    const double pixel_error = demands.grids.pixel_error;
-    const auto lamps =
-        static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), is_lamp));
-    if (lamps == 0 || rays_to_all(model.lights, demands.grids.rays) < kFewShadowRays ||
-        drawn.empty())
-        return {};
-    const auto strongest = [&](const char* why) {
-        return strongest_plan(model.lights, drawn.size(), view, demands.grids.rays, why, problems);
-    };
-    if (!ray::available())
-        return strongest("no rays can be cast to find what each of them lights");
-    const bool many = lamps >= kManyLamps;
-    if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
-        if (lamps > kMostUnchosen)
-            return strongest("there are more of them, or of triangles, than can be looked through");
-        if (many)
-            problems.push_back({"", Severity::Info, "lights_as_they_are",
-                                text("all ", lamps,
-                                     " lamps light everything: there are more of them, or of "
-                                     "triangles, than can be looked through")});
-        return {};
-    }
-    const LitScene scene(model, renderer, drawn, job);
-    const double pixels = static_cast<double>(view.width) * view.height;
-    const double wanted =
-        std::max(kShare * pixels, std::clamp(kMostShare * pixels, kFewRoomPoints, kRoomPoints));
-    const double count = std::clamp(std::min(wanted, kRays / static_cast<double>(lamps)),
-                                    kFewestPoints, kMostPoints);
-    const int bounces = std::clamp(demands.bounces, 0, kMostHanded);
-    LitGrid grid = scene.points(view, static_cast<size_t>(count / (1 + bounces)), bounces, job);
-    std::vector<Bound> bounds;
+/// The plan of lamps, by points that the view shows; others are added to them.
+LightPlan plan_lamps(const LitScene& scene, LitGrid& grid, std::span<const Light> lights,
+                     std::span<const DrawnThing> drawn, std::span<const Bound> bounds,
+                     const View& view, const LightDemands& demands, const Job& job) {
     std::vector<uint8_t> divisible;
     for (uint32_t i = 0; i < drawn.size(); ++i) {
         const RepresentationSummary& summary = drawn[i].representation->summary;
-        bounds.push_back(transformed(summary.bound, drawn[i].world));
         // POV-Ray forgets flags of rays in clipped objects, and unions are not split then.
         divisible.push_back(drawn[i].hidden == 0 && !is_copied(summary.kind) &&
                             !scene.partly_clear(i));
     }
+    const double pixel_error = demands.grids.pixel_error;
     const size_t even = grid.points.size();
     scene.add_other_light(demands, grid.points, job);
+    const bool many =
+        std::count_if(lights.begin(), lights.end(), is_lamp) >= static_cast<ptrdiff_t>(kManyLamps);
     std::vector<PointSighting> sightings;
     if (many) {
         const std::vector<uint8_t> cells =
-            cells_with_lamps(model.lights, view, grid, demands.sky, pixel_error, job);
+            cells_with_lamps(lights, view, grid, demands.sky, pixel_error, job);
         sightings = add_missing_lit_points(scene, view, divisible, cells, grid, job);
     }
     std::vector<LitPoint>& points = grid.points;
-    if (points.empty())
-        return {};
     const LightTree tree = make_light_tree(
-        model.lights,
-        [&](const glm::dvec3& from, const glm::dvec3& to) { return scene.clear(from, to); }, job);
+        lights, [&](const glm::dvec3& from, const glm::dvec3& to) { return scene.clear(from, to); },
+        job);
     const Reaches reaches = [&](const Light& light, const LitPoint& point, uint32_t& blocker) {
         return scene.reaches(light, point, blocker);
     };
@@ -303,8 +274,67 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     const std::vector<std::vector<LampGrid>> grids =
         fit_lamp_grids(tree, cut, points, shares, view, finely, job);
     // Added points look at corners: the mean is that of the evenly spread ones.
-    return plan_of({tree, cut, grids}, std::span(points).first(even > 0 ? even : points.size()),
-                   regions, drawn.size(), many);
+    return plan_of({tree, cut, grids}, std::span(points).first(even), regions, drawn.size(), many);
+}
+
+}  // namespace
+
+LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
+                      std::span<const DrawnThing> drawn, const View& view,
+                      const LightDemands& demands, Problems& problems, const Job& job) {
+    const auto lamps =
+        static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), is_lamp));
+    const bool plans_lamps =
+        lamps > 0 && rays_to_all(model.lights, demands.grids.rays) >= kFewShadowRays;
+    std::vector<Bound> bounds;
+    for (const DrawnThing& thing : drawn)
+        bounds.push_back(transformed(thing.representation->summary.bound, thing.world));
+    std::vector<uint32_t> suns;
+    if (demands.measured_suns)
+        suns = soft_suns(model.lights, view, demands.grids, bounds);
+    if (drawn.empty() || (!plans_lamps && suns.empty()))
+        return {};
+    const auto strongest = [&](const char* why) {
+        return plans_lamps ? strongest_plan(model.lights, drawn.size(), view, demands.grids.rays,
+                                            why, problems)
+                           : LightPlan{};
+    };
+    if (!ray::available())
+        return strongest("no rays can be cast to find what each of them lights");
+    if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
+        if (lamps > kMostUnchosen)
+            return strongest("there are more of them, or of triangles, than can be looked through");
+        if (plans_lamps && lamps >= kManyLamps)
+            problems.push_back({"", Severity::Info, "lights_as_they_are",
+                                text("all ", lamps,
+                                     " lamps light everything: there are more of them, or of "
+                                     "triangles, than can be looked through")});
+        return {};
+    }
+    const LitScene scene(model, renderer, drawn, job);
+    const double pixels = static_cast<double>(view.width) * view.height;
+    const double wanted =
+        std::max(kShare * pixels, std::clamp(kMostShare * pixels, kFewRoomPoints, kRoomPoints));
+    const double judged = static_cast<double>(plans_lamps ? lamps : suns.size());
+    const double count = std::clamp(std::min(wanted, kRays / judged), kFewestPoints, kMostPoints);
+    const int bounces = plans_lamps ? std::clamp(demands.bounces, 0, kMostHanded) : 0;
+    LitGrid grid = scene.points(view, static_cast<size_t>(count / (1 + bounces)), bounces, job);
+    if (grid.points.empty())
+        return {};
+    std::vector<Light> soft;
+    for (const uint32_t sun : suns)
+        soft.push_back(model.lights[sun]);
+    const std::vector<std::vector<int>> sun_rays =
+        fit_sun_rays(scene, grid.points, soft, drawn.size(), view, demands.grids, job);
+    std::vector<uint32_t> things;
+    for (const LitPoint& point : grid.points)
+        things.push_back(point.region);
+    LightPlan plan;
+    if (plans_lamps)
+        plan = plan_lamps(scene, grid, model.lights, drawn, bounds, view, demands, job);
+    if (!suns.empty())
+        add_suns(plan, model.lights, suns, sun_rays, things);
+    return plan;
 }
 
 }  // namespace lodestone::light

@@ -59,6 +59,10 @@ struct LightPlan {
     std::vector<LitPiece> pieces;
     double lights_each = 0;  // the mean number of lights of a point that the view shows
     double shadow_rays = 0;  // the mean number of shadow rays to them
+    /// The suns among `lights`, by their numbers in the model; other suns light everything, and so
+    /// do all lamps where `lamps` is false.
+    std::vector<uint32_t> suns;
+    bool lamps = false;
 
     bool empty() const { return groups.empty(); }
 };
@@ -70,6 +74,8 @@ struct LightDemands {
     glm::dvec3 sky{0.0};      // radiance of the sky's uniform light
     bool sky_shaded = false;  // true: as far as surfaces see the sky; else all of it everywhere
     std::span<const Light> suns{};  // what else lights the points; lamps among them do not count
+    /// True: the model's suns are sampled as finely as their penumbrae on each thing need it.
+    bool measured_suns = false;
 };
 
 /// With fewer shadow rays to all lamps than this at a point, all of them light everything.
@@ -89,11 +95,12 @@ inline constexpr double kFewShadowRays = 8;
 /// that send light to what the view shows are used, too. A lamp that matters to no point is in no
 /// group.
 /// Fewer than 8 lamps are not grouped: those that matter anywhere light everything.
+/// Suns are in every group, with as many rays as the penumbrae need that the view shows there.
 ///
 /// Where rays cannot be cast, or there is too much to cast them at, the 64 lamps that are strongest
 /// at the camera light everything, and others nothing (a problem).
 ///
-/// Empty if lamps cost few rays, or they are few and cannot be chosen.
+/// Empty if lamps cost few rays, or they are few and cannot be chosen, and no sun is soft.
 LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
                       std::span<const DrawnThing> drawn, const View& view,
                       const LightDemands& demands, Problems& problems, const Job& job = {});

@@ -5,6 +5,7 @@
 #include "base/maths.h"
 #include "base/parallel.h"
 #include "choose/criterion.h"
+#include "light/clear_materials.h"
 #include "light/light_arrival.h"
 #include "measure/visible/convex_bound.h"
 
@@ -34,19 +35,16 @@ constexpr double kBeside = 8;
 // Law: positions are known to 1e-7 of it; this is a large margin.
 constexpr double kRelative = 1e-4;
 
-bool shines_as_sun(const Light& light) {
-    const glm::dvec3 energy = energy_of(light);
-    const double length = glm::length(light.direction);
-    return light.kind == LightKind::Sun && finite(energy) && length > 0 && std::isfinite(length) &&
-           std::min({energy.x, energy.y, energy.z}) >= 0;
-}
-
-bool see_through(const Material& material) {
-    const bool covered =
-        material.alpha_mode == AlphaMode::Opaque ||
-        (!material.alpha_texture && material.alpha >= 1 && !material.vertex_colors);
-    return !covered || material.transmission > 0 ||
-           (material.other && see_through(*material.other));
+/// A clear material that hides light where it hides more than half of it, for films and clouds have
+/// no shadow with an edge.
+Material halved_alpha(Material material) {
+    if (material.alpha_mode == AlphaMode::Blend) {
+        material.alpha_mode = AlphaMode::Clip;
+        material.alpha_cutoff = 0.5;
+    }
+    if (material.other)
+        material.other = std::make_shared<const Material>(halved_alpha(*material.other));
+    return material;
 }
 
 }  // namespace
@@ -66,7 +64,7 @@ double reach_beside(const View& view, const LitGrid& grid, const LitPoint& point
     return kBeside * cell * choose::pixel_size(view, z);
 }
 
-LitScene::SceneShape LitScene::shape_of(const DrawnThing& lit) const {
+LitScene::SceneShape LitScene::shape_of(const DrawnThing& lit) {
     const Representation& representation = *lit.representation;
     SceneShape shape;
     if (representation.summary.kind == Kind::Mesh)
@@ -81,10 +79,20 @@ LitScene::SceneShape LitScene::shape_of(const DrawnThing& lit) const {
         count += opaque[i];
     }
     shape.all = std::make_shared<const ray::MeshScene>(mesh);
-    if (count == opaque.size())
+    shape.dimming = shape.all;
+    if (count == opaque.size()) {
         shape.opaque = shape.all;
-    else if (count > 0)
+        return shape;
+    }
+    if (count > 0)
         shape.opaque = std::make_shared<const ray::MeshScene>(subset(mesh, opaque));
+    std::vector<Material> materials;
+    for (const uint32_t index : representation.materials)
+        materials.push_back(index < model_.materials.size()
+                                ? halved_alpha(clear_material(model_.materials[index]))
+                                : Material{});
+    shape.dimming = std::make_shared<const ray::MeshScene>(
+        mesh, std::make_shared<const ray::MeshSkin>(materials, texels_));
     return shape;
 }
 
@@ -92,7 +100,7 @@ LitScene::LitScene(const Model& model, const RendererSurfaces& renderer,
                    std::span<const DrawnThing> drawn, const Job& job)
     : model_(model), drawn_(drawn), tolerance_(renderer.tolerance) {
     for (size_t i = 0; i < model.materials.size(); ++i)
-        surfaces_.push_back({renderer.reflections[i], see_through(model.materials[i])});
+        surfaces_.push_back({renderer.reflections[i], lets_light_through(model.materials[i])});
     surfaces_.emplace_back();
     std::unordered_map<Hash, uint32_t> known;
     std::vector<uint32_t> firsts;
@@ -116,7 +124,7 @@ LitScene::LitScene(const Model& model, const RendererSurfaces& renderer,
             seen_.add(shape.all, bound, lit.world, i);
         if ((lit.hidden & kShadowRays) != 0)
             continue;
-        dimming_.add(shape.all, bound, lit.world, i);
+        dimming_.add(shape.dimming, bound, lit.world, i);
         if (shape.opaque)
             blocking_.add(shape.opaque, bound, lit.world, i);
     }
@@ -324,6 +332,32 @@ void LitScene::add_other_light(const LightDemands& demands, std::span<LitPoint> 
             }
         }
     });
+}
+
+double LitScene::penumbra_from(const Light& sun, const LitPoint& point) const {
+    // The rays to the rim of the sun; one more goes to its middle.
+    // Taste: more find thinner shadows, at every point.
+    constexpr int kRim = 5;
+    const glm::dvec3 way = -glm::normalize(sun.direction);
+    if (!(glm::dot(way, point.normal) > 0))
+        return 0;
+    const double radius = std::tan(std::clamp(sun.angle / 2, 0.0, 1.5));
+    const glm::dvec3 u = perpendicular(way);
+    const glm::dvec3 v = glm::cross(way, u);
+    bool free = false;
+    double farthest = 0;
+    for (int i = 0; i <= kRim; ++i) {
+        const double turn = 2 * kPi * i / kRim;
+        const glm::dvec3 aside = std::cos(turn) * u + std::sin(turn) * v;
+        const glm::dvec3 there = i < kRim ? glm::normalize(way + radius * aside) : way;
+        const ray::PlacedScenes::PlacedHit hit =
+            dimming_.first_hit(point.position + point.aside, there);
+        if (hit.hit)
+            farthest = std::max(farthest, hit.t);
+        else
+            free = true;
+    }
+    return free ? farthest : 0;
 }
 
 double LitScene::reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const {

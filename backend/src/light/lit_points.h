@@ -39,7 +39,8 @@ public:
     }
 
     /// Sets the light that points get besides lamps: of a uniform sky, as far as they see it where
-    /// it is shaded, and of suns where nothing hides them (what is partly clear hides both).
+    /// it is shaded, and of suns where nothing hides them (what is partly clear hides them
+    /// where it hides more than half).
     void add_other_light(const LightDemands& demands, std::span<LitPoint> points,
                          const Job& job) const;
 
@@ -48,6 +49,9 @@ public:
     /// The share of a light that reaches a point; see-through surfaces hide nothing. `blocker`: see
     /// Reaches.
     double reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const;
+    /// The distance of what hides a part of a sun from a point, the farthest of it, by a few rays;
+    /// 0 where all of the sun is hidden, or nothing.
+    double penumbra_from(const Light& sun, const LitPoint& point) const;
     /// Whether any part of a drawn thing is see-through.
     bool partly_clear(uint32_t drawn) const {
         const SceneShape& shape = shapes_[shape_of_[drawn]];
@@ -62,6 +66,8 @@ private:
         std::shared_ptr<const ray::MeshScene> all;
         /// The opaque part; null: nothing is opaque; the same as `all` where everything is.
         std::shared_ptr<const ray::MeshScene> opaque;
+        /// All of it; what is partly clear lets rays through where it hides less than half.
+        std::shared_ptr<const ray::MeshScene> dimming;
     };
     struct LitSurface {
         SurfaceReflection reflection;
@@ -74,7 +80,7 @@ private:
     };
 
     LitSurface surface_of(const DrawnThing& lit, uint16_t slot) const;
-    SceneShape shape_of(const DrawnThing& lit) const;
+    SceneShape shape_of(const DrawnThing& lit);
     static SightRay ray_at(const View& view, double x, double y);
     std::vector<LitPoint> followed(SightRay ray) const;
     void bounce(int times, PcgRandom& random, std::vector<LitPoint>& out) const;
@@ -87,6 +93,7 @@ private:
     ray::PlacedScenes seen_;
     ray::PlacedScenes blocking_;
     ray::PlacedScenes dimming_;  // blocking_, and what is partly clear
+    image::TexelCache texels_;
     double tolerance_ = 0;
     double least_ = 0;  // no ray begins nearer than this to the surface it leaves
 };
