@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards rays through many placements: the same answers as through each of them.
-#include <cmath>
-#include <limits>
-
 #include "base/clock.h"
 #include "base/random.h"
 #include "ray/placed_scenes.h"
 #include "scenes/small_meshes.h"
 #include "scenes/with_rays.h"
+
+#include <cmath>
+#include <limits>
 
 using namespace lodestone;
 using ray::PlacedScenes;
