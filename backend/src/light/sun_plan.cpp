@@ -42,14 +42,16 @@ double narrowest(const GridDemands& demands) {
     return std::max(kLeastPenumbra, demands.shadow_error);
 }
 
-/// The fewest rays along an edge for penumbrae of these widths, in pixels: 1, 2, or 2^n + 1.
+/// The fewest rays along an edge for penumbrae of these widths, in pixels: 1, 2, or 2^n + 1. They
+/// make steps of twice `step` at most, so that no line of equal light is farther off than that.
 int rays_for(std::vector<double>& widths, double step, int most) {
     if (widths.empty())
         return 1;
     const auto wider = static_cast<size_t>(kWider * static_cast<double>(widths.size()));
     std::nth_element(widths.begin(), widths.begin() + static_cast<ptrdiff_t>(wider), widths.end(),
                      std::greater<>());
-    return grid_rays(widths[wider] / step, most);
+    const double steps = widths[wider] / step;
+    return steps > 1 ? grid_rays(std::max(2.0, steps / 2), most) : 1;
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ double sun_shadow_rays(int rays);
 std::vector<uint32_t> soft_suns(std::span<const Light> lights, const View& view,
                                 const GridDemands& demands, std::span<const Bound> bounds);
 
-/// By thing and sun: the fewest rays along an edge with which hardly a point of the thing shows a
-/// step. A point lies in a penumbra where something hides a part of the sun from it; it is as wide
+/// By thing and sun: the fewest rays along an edge with which light is hardly anywhere on the thing
+/// farther off than the narrowest penumbra. A point lies in a penumbra where something hides a part of the sun from it; it is as wide
 /// as the sun looks from there, farthest away. A thing with few points has as many as all such
 /// things together need, one without points one. `points[i].region` is the thing. Any number of
 /// threads gives the same result. cost: 6 rays a point and sun
