@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the numbers of the sky's light at corners: as bytes, and for no other mesh than theirs.
+#include "light/sky/sky_shares.h"
+#include "scenes/small_meshes.h"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+using namespace lodestone;
+using namespace lodestone::light;
+
+namespace {
+
+/// A quad whose diagonal is split.
+SkyShares split_quad() {
+    SkyShares shares;
+    shares.mean = 0.5;
+    shares.splits = {{geometry::welded_edge(0, 2)}};
+    for (int i = 0; i < 12; ++i)
+        shares.corners.push_back(static_cast<uint8_t>(20 * i));
+    return shares;
+}
+
+}  // namespace
+
+TEST(SkyShares, BytesAreTheNearestToShares) {
+    EXPECT_EQ(share_byte(0), 0);
+    EXPECT_EQ(share_byte(1), kShareSteps);
+    EXPECT_EQ(share_byte(7), kShareSteps);
+    EXPECT_EQ(share_byte(std::numeric_limits<double>::quiet_NaN()), 0);
+    for (int byte = 0; byte <= kShareSteps; ++byte)
+        EXPECT_EQ(share_byte(share_of_byte(static_cast<uint8_t>(byte))), byte);
+}
+
+TEST(SkyShares, ASplitMeshHasAShareForEachCorner) {
+    const Mesh quad = shapes::quad(2, 1);
+    const auto split = split_for_sky(quad, split_quad());
+    ASSERT_TRUE(split);
+    EXPECT_EQ(split->triangles.size(), 4u);
+    EXPECT_FALSE(whole(quad, split_quad()));
+    SkyShares plain;
+    plain.corners.assign(6, 255);
+    EXPECT_TRUE(whole(quad, plain));
+    EXPECT_FALSE(whole(shapes::cube(), plain));
+    EXPECT_EQ(split_for_sky(quad, plain)->triangles.size(), 2u);
+}
+
+TEST(SkyShares, AnotherMeshIsRefused) {
+    EXPECT_FALSE(split_for_sky(shapes::cube(), split_quad()));
+    SkyShares other = split_quad();
+    other.splits[0] = {geometry::welded_edge(1, 3)};  // no edge
+    EXPECT_FALSE(split_for_sky(shapes::quad(2, 1), other));
+}
+
+TEST(SkyShares, BytesThatCannotBeAreRefused) {
+    const SkyShares good = split_quad();
+    const auto back = SkyShares::of_bytes(good.bytes(), 2);
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->splits, good.splits);
+    EXPECT_EQ(back->corners, good.corners);
+    EXPECT_EQ(back->mean, good.mean);
+    EXPECT_FALSE(SkyShares::of_bytes(good.bytes(), 5));
+    for (const double mean : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()}) {
+        SkyShares bad = good;
+        bad.mean = mean;
+        EXPECT_FALSE(SkyShares::of_bytes(bad.bytes(), 2)) << mean;
+    }
+    SkyShares falling = good;
+    falling.splits = {{9, 8}};
+    EXPECT_FALSE(SkyShares::of_bytes(falling.bytes(), 2));
+    SkyShares many = good;
+    many.splits.assign(2 * kSplitRounds + 1, {});
+    EXPECT_FALSE(SkyShares::of_bytes(many.bytes(), 2));
+    SkyShares odd = good;
+    odd.corners.pop_back();
+    EXPECT_FALSE(SkyShares::of_bytes(odd.bytes(), 2));
+    SkyShares more = good;
+    more.splits.clear();
+    EXPECT_FALSE(SkyShares::of_bytes(more.bytes(), 2));
+}
