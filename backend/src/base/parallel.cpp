@@ -4,6 +4,9 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
+#include <exception>
+
 namespace lodestone {
 namespace {
 
@@ -18,13 +21,22 @@ void parallel_for(size_t count, const std::function<void(size_t)>& body) {
         return;
     }
     const int limit = thread_limit;
+    // No exception goes through TBB 2021.8: where it cancels loops in loops it may crash, for it
+    // follows contexts that are gone.
+    std::atomic<bool> stopped{false};
+    std::exception_ptr thrown;  // by the one that stopped first
     const auto loop = [&] {
         tbb::parallel_for(
             tbb::blocked_range<size_t>(0, count, 1),
             [&](const tbb::blocked_range<size_t>& range) {
                 const ThreadLimit same(limit);  // loops started inside are limited alike
-                for (size_t i = range.begin(); i < range.end(); ++i)
-                    body(i);
+                try {
+                    for (size_t i = range.begin(); i < range.end() && !stopped; ++i)
+                        body(i);
+                } catch (...) {
+                    if (!stopped.exchange(true))
+                        thrown = std::current_exception();
+                }
             },
             tbb::simple_partitioner());
     };
@@ -32,6 +44,8 @@ void parallel_for(size_t count, const std::function<void(size_t)>& body) {
         tbb::task_arena(limit).execute(loop);
     else
         loop();
+    if (thrown)
+        std::rethrow_exception(thrown);
 }
 
 int hardware_threads() {
