@@ -31,12 +31,15 @@ constexpr double kSplitTriangles = 2000;  // Taste: as kSplitShare
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
-constexpr int kFewestMeanRays = 16;          // Taste: as kMeanRays
-constexpr double kMostMeanRays = 1'000'000;  // Taste: rays of all placements together
-// Distinct triangles of a scene that is looked through, at most.
+constexpr int kFewestMeanRays = 16;        // Taste: as kMeanRays
+constexpr double kMostMeanRays = 300'000;  // Taste: rays of all placements together
+// Distinct triangles from which on corners have fewer rays each.
+// Taste: a larger value has less noise in large scenes, whose bake takes longer than their files.
+constexpr uint64_t kFullTriangles = 300'000;
+constexpr int kFewestCornerRays = 16;  // Taste: as kFullTriangles
+// Things of a scene that is looked through, at most.
 // Taste: more would take longer than most pictures.
-constexpr uint64_t kMostTriangles = 600'000;
-constexpr size_t kMostLeaves = 2'000'000;  // Taste: as kMostTriangles
+constexpr size_t kMostLeaves = 2'000'000;
 // The steps of a factor.
 // Taste: fine enough to keep means, coarse enough that rounding does not make other files.
 constexpr double kFactorSteps = 256;
@@ -72,6 +75,18 @@ void hash_transform(Hasher& hasher, const Affine& world) {
         hasher.value(value);
 }
 
+/// A number with commas between thousands.
+std::string grouped(uint64_t number) {
+    const std::string digits = std::to_string(number);
+    std::string out;
+    for (size_t i = 0; i < digits.size(); ++i) {
+        if (i > 0 && (digits.size() - i) % 3 == 0)
+            out += ',';
+        out += digits[i];
+    }
+    return out;
+}
+
 double stepped(double factor) {
     return std::round(limited(factor, 0, 1) * kFactorSteps) / kFactorSteps;
 }
@@ -84,13 +99,14 @@ public:
 
     /// The reason why there is none; "" when lights() are found.
     std::string run() {
-        if (!collect())
-            return "There is too much in the scene to find what hides the sky";
+        const std::string reason = collect();
+        if (!reason.empty())
+            return "There is too much in the scene to find what hides the sky: " + reason;
         find_keys();
-        std::string reason;
+        std::string without_rays;
         if (baked()) {
-            if (!ray::available(&reason))
-                return "What hides the sky is not found: " + reason;
+            if (!ray::available(&without_rays))
+                return "What hides the sky is not found: " + without_rays;
             bake();
         }
         light_all();
@@ -148,7 +164,8 @@ private:
         return true;
     }
 
-    bool collect() {
+    /// How much is too much; "" when it is not.
+    std::string collect() {
         // Whether a node is below something that moves, for parents come before children.
         std::vector<uint8_t> moves(cut_.nodes.size(), 0);
         for (size_t i = 0; i < cut_.nodes.size(); ++i) {
@@ -169,13 +186,12 @@ private:
             thing.group = object.group();
             thing.first = static_cast<uint32_t>(leaves_.size());
             if (!walk(node.object, cut_.world(node), node.hidden, thing.moves))
-                return false;
+                return "more than " + grouped(kMostLeaves) + " things";
             things_.push_back(thing);
         }
         uint64_t triangles = 0;
-        uint64_t hiding_triangles = 0;
         Hasher scene;
-        scene.value(kBakeVersion).value(options_.rays);
+        scene.value(kBakeVersion);
         for (const SkyLeaf& leaf : leaves_) {
             const RepresentationSummary& summary = finest_of(leaf).summary;
             PlacedMesh& mesh = placed_[summary.hash];
@@ -185,16 +201,18 @@ private:
             if (!leaf.hides)
                 continue;
             ++hiding_;
-            hiding_triangles += mesh.triangles;
             scene.value(summary.hash);
             hash_transform(scene, leaf.world);
             sizes_ += transformed(summary.bound, leaf.world).radius;
         }
         scene_hash_ = scene.result();
         triangles_ = triangles;
+        rays_ = sky_rays(options_.rays, triangles);
         choose_copied();
-        // Rays through what cannot be joined take ten times as long.
-        return triangles <= kMostTriangles && hiding_triangles <= light::SkyScene::kMostJoined;
+        return triangles <= options_.most_triangles
+                   ? ""
+                   : grouped(triangles) + " distinct triangles, of " +
+                         grouped(options_.most_triangles) + " at most";
     }
 
     const Representation& finest_of(const SkyLeaf& leaf) const {
@@ -250,7 +268,7 @@ private:
     Hash key_of(const Representation& representation, const SkyThing* placed) const {
         Hasher hasher;
         const RepresentationSummary& summary = representation.summary;
-        hasher.value(kBakeVersion).value(options_.rays).value(summary.hash);
+        hasher.value(kBakeVersion).value(rays_).value(summary.hash);
         hasher.value(summary.cost.triangles);
         if (placed != nullptr) {
             hasher.value(scene_hash_).value(summary.max_error).value(splits_of(*placed));
@@ -413,7 +431,7 @@ private:
     uint64_t work_of_bake() const {
         uint64_t work = 1;
         for (const auto& [key, wanted] : missing_)
-            work += work_of(*wanted, options_.rays);
+            work += work_of(*wanted, rays_);
         for (const WantedMeans* wanted : missing_means_)
             work += wanted->places.size() * static_cast<uint64_t>(mean_rays());
         return work;
@@ -425,7 +443,7 @@ private:
             job_.check();
             WantedShares& wanted = *missing_[i].second;
             light::SkyRequest request{
-                surfaces.of(*wanted.representation), {}, nullptr, 0, options_.rays, 0};
+                surfaces.of(*wanted.representation), {}, nullptr, 0, rays_, 0};
             if (wanted.placed != nullptr) {
                 request.world = wanted.placed->world;
                 request.around = &scene;
@@ -433,7 +451,7 @@ private:
                 request.splits = splits_of(*wanted.placed);
             }
             wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
-            progress.add(work_of(wanted, options_.rays));
+            progress.add(work_of(wanted, rays_));
         });
     }
 
@@ -533,6 +551,7 @@ private:
     std::unordered_map<Hash, PlacedMesh> placed_;   // leaves by finest level
     std::unordered_map<Hash, uint32_t> stand_ins_;  // things by stand-in
     uint32_t hiding_ = 0;
+    int rays_ = 0;            // that tell the share of a corner
     uint64_t triangles_ = 0;  // of all distinct finest levels
     size_t visits_ = 0;
     double sizes_ = 0;  // radii of all that hides the sky
@@ -549,6 +568,13 @@ private:
 };
 
 }  // namespace
+
+int sky_rays(int rays, uint64_t triangles) {
+    const double part =
+        static_cast<double>(kFullTriangles) / static_cast<double>(std::max<uint64_t>(triangles, 1));
+    return std::max(std::min(rays, kFewestCornerRays),
+                    static_cast<int>(std::min(1.0, part) * rays));
+}
 
 double share_of_grade(uint8_t grade) {
     const double root = static_cast<double>(grade) / (kSkyGrades - 1);

@@ -32,9 +32,16 @@ struct SkyLight {
 };
 using SkyLightPtr = std::shared_ptr<const SkyLight>;
 
+/// The rays of each corner where a scene has so many distinct triangles: fewer in large ones, so
+/// that all together stay about as many.
+int sky_rays(int rays, uint64_t triangles);
+
 /// The choices for sky occlusion.
 struct SkyOcclusionOptions {
-    int rays = 128;              // that tell the share of a corner
+    int rays = 128;  // that tell the share of a corner, of a scene that is not large
+    /// The most distinct triangles of a scene that is looked through.
+    /// Taste: a larger value shades larger scenes, for minutes and gigabytes.
+    uint64_t most_triangles = 6'000'000;
     std::filesystem::path file;  // where bakes are kept; "": nowhere
     /// Makes the finest level of everything resident; asked for only where something is to be
     /// found that was not kept.

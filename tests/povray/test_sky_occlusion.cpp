@@ -373,20 +373,34 @@ TEST_F(SkyOcclusionScenes, SharesOfOtherSplitsAreNotTaken) {
     EXPECT_EQ(includes("scene"), includes("fresh"));
 }
 
-TEST_F(SkyOcclusionScenes, ALargeStreetIsNotLookedThroughForMinutes) {
-    // Its bake took more than twelve minutes of CPU; now it is left out, and told.
-    const ObjectIndex ring =
-        builder.mesh(shapes::torus(256, 256), {builder.matte({.5, .5, .5})});  // 131,072
-    for (int i = 0; i < 12; ++i)
-        builder.place_at(ring, {4.0 * i, 0, 0});
-    ExportOptions options;
-    options.folder = own_scratch() / "street";
-    options.shading.sky_rays = 64;
+// A street of ten million placed triangles was left out, and nobody told how much is too much.
+TEST_F(SkyOcclusionScenes, AProblemTellsHowMuchIsTooMuch) {
+    builder.place(builder.mesh(shapes::torus(10, 10)));
+    for (int i = 0; i < 20; ++i)
+        builder.place(builder.mesh(shapes::torus(8, 8)), at(3 * i, 0, 0));
+    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+    SkyOcclusionOptions options;
+    options.most_triangles = 327;  // however often they are placed
     Problems problems;
-    scenes::write(builder.finish(), scenes::above(), options, problems);
+    const SkyOcclusion none(builder.model, cut, options, problems, {});
+    EXPECT_FALSE(none.of(0));
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].code, "sky_not_occluded");
-    EXPECT_EQ(ambients(includes("street")).size(), 1u);
+    EXPECT_NE(problems[0].message.find("328 distinct triangles, of 327 at most"), std::string::npos)
+        << problems[0].message;
+    options.most_triangles = 328;
+    const SkyOcclusion some(builder.model, cut, options, problems, {});
+    EXPECT_TRUE(some.of(0));
+    EXPECT_EQ(problems.size(), 1u);
+}
+
+TEST_F(SkyOcclusionScenes, LargeScenesHaveFewerRaysForEachCorner) {
+    EXPECT_EQ(sky_rays(128, 0), 128);
+    EXPECT_EQ(sky_rays(128, 300'000), 128);
+    EXPECT_EQ(sky_rays(128, 600'000), 64);
+    EXPECT_EQ(sky_rays(128, 1'000'000'000), 16);
+    EXPECT_EQ(sky_rays(1024, 3'000'000), 102);
+    EXPECT_EQ(sky_rays(4, 1'000'000'000), 4);
 }
 
 TEST_F(SkyOcclusionScenes, WhatMovesHidesTheSkyFromItselfAlone) {

@@ -26,6 +26,12 @@ SkySurface SkySurfaces::made(const Representation& representation) {
         out.mesh = std::get<std::shared_ptr<const Mesh>>(representation.payload);
     else
         out.mesh = std::make_shared<const Mesh>(tessellated(representation));
+    double area = 0;
+    out.areas.reserve(out.mesh->triangles.size());
+    for (size_t i = 0; i < out.mesh->triangles.size(); ++i) {
+        const double own = glm::length(area_vector(*out.mesh, i));
+        out.areas.push_back(area += std::isfinite(own) ? own : 0);
+    }
     std::vector<Material> materials;
     for (const uint32_t index : representation.materials) {
         const Material* material =

@@ -24,6 +24,7 @@ struct SkySurface {
     std::shared_ptr<const ray::MeshScene> scene;
     std::vector<uint8_t> see_through;  // by slot: light goes through some or all of it
     std::vector<uint32_t> materials;   // by slot, of the model
+    std::vector<double> areas;         // of each triangle and all before it
 
     bool opaque_slot(uint16_t slot) const {
         return slot >= see_through.size() || see_through[slot] == 0;

@@ -317,12 +317,8 @@ SkyShares sky_shares(const SkyRequest& request, const Job& job) {
 SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     const SkySampler sampler(request);
     const Mesh& mesh = *request.surface.mesh;
-    std::vector<double> areas(mesh.triangles.size());
-    double sum = 0;
-    for (size_t i = 0; i < areas.size(); ++i) {
-        const std::optional<SkySampler::PlacedTriangle> placed = sampler.placed(mesh, i);
-        areas[i] = sum += placed ? placed->area : 0;
-    }
+    const std::vector<double>& areas = request.surface.areas;
+    const double sum = areas.empty() ? 0 : areas.back();
     SkyMeans out;
     if (!(sum > 0) || rays < 1)
         return out;
@@ -346,18 +342,21 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         if (!placed)
             continue;
         const bool both = !request.surface.opaque_slot(mesh.slot(triangle));
+        // Rays are as dense as the surface is before it is placed, which may stretch some of it.
+        const double own = areas[triangle] - (triangle > 0 ? areas[triangle - 1] : 0);
+        const double weight = own > 0 ? placed->area / own : 0;
         // Every second point of the sequence lies in one half of each of its axes: both sides have
         // all points.
         const SkySampler::SkyRay ray = sampler.ray(
             mesh, triangle, *placed, static_cast<uint32_t>(both ? i / 2 : i), both && i % 2 == 1);
         const double alone = ray.open && !sampler.hidden_alone(ray) ? 1 : 0;
         const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
-        all.placed += seen;
-        all.alone += alone;
-        all.rays += 1;
+        all.placed += weight * seen;
+        all.alone += weight * alone;
+        all.rays += weight;
         if (seen == 0 && !both && sampler.lies_inside(mesh, triangle, *placed)) {
-            inside.alone += alone;
-            inside.rays += 1;
+            inside.alone += weight * alone;
+            inside.rays += weight;
         }
     }
     if (inside.rays < all.rays) {
