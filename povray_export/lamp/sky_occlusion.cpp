@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "light/sky/sky_bakes.h"
 #include "povray_export/lamp/placement_grades.h"
-#include "povray_export/scene/invertible_transform.h"
+#include "povray_export/lamp/sky_things.h"
 
 #include <algorithm>
 #include <atomic>
@@ -19,15 +19,6 @@ namespace {
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
 constexpr uint32_t kBakeVersion = 2;
-// The triangles of copies, beyond kPlacementGrades of a mesh, that have shares of their own: a share
-// of those of all distinct meshes, and some more.
-// Taste: a larger value shades small things more truly, for a copy of the mesh each.
-constexpr double kCopiedShare = 0.25;
-constexpr double kCopiedTriangles = 5000;  // Taste: as kCopiedShare
-// The triangles that splits may add: a share of those of all distinct meshes, and some more.
-// Taste: a larger value draws sharper shade on large faces, for memory and parsing of each.
-constexpr double kSplitShare = 0.25;
-constexpr double kSplitTriangles = 2000;  // Taste: as kSplitShare
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -37,55 +28,9 @@ constexpr double kMostMeanRays = 300'000;  // Taste: rays of all placements toge
 // Taste: a larger value has less noise in large scenes, whose bake takes longer than their files.
 constexpr uint64_t kFullTriangles = 300'000;
 constexpr int kFewestCornerRays = 16;  // Taste: as kFullTriangles
-// Things of a scene that is looked through, at most.
-// Taste: more would take longer than most pictures.
-constexpr size_t kMostLeaves = 2'000'000;
 // The steps of a factor.
 // Taste: fine enough to keep means, coarse enough that rounding does not make other files.
 constexpr double kFactorSteps = 256;
-
-/// A placement of something that is not a group.
-struct SkyLeaf {
-    ObjectIndex object = kNoObject;
-    Affine world;
-    bool hides = false;  // rests, and is met by shadow rays
-};
-
-/// A choice of the cut.
-struct SkyThing {
-    const Representation* representation = nullptr;
-    Affine world;
-    uint32_t first = 0;  // of the leaves that are it or below it
-    bool seen = false;   // false: it is drawn as nothing
-    bool moves = false;
-    bool group = false;  // stands in for a group
-};
-
-/// A finest level, and how often it is placed.
-struct PlacedMesh {
-    uint64_t count = 0;
-    uint64_t triangles = 0;
-    bool copied = false;  // true: each copy has shares of its own
-};
-
-void hash_transform(Hasher& hasher, const Affine& world) {
-    double rows[12];
-    world.to_rows(rows);
-    for (const double value : rows)
-        hasher.value(value);
-}
-
-/// A number with commas between thousands.
-std::string grouped(uint64_t number) {
-    const std::string digits = std::to_string(number);
-    std::string out;
-    for (size_t i = 0; i < digits.size(); ++i) {
-        if (i > 0 && (digits.size() - i) % 3 == 0)
-            out += ',';
-        out += digits[i];
-    }
-    return out;
-}
 
 double stepped(double factor) {
     return std::round(limited(factor, 0, 1) * kFactorSteps) / kFactorSteps;
@@ -95,13 +40,17 @@ class SkyPlanner {
 public:
     SkyPlanner(const Model& model, const choose::Cut& cut, const SkyOcclusionOptions& options,
                const Job& job)
-        : model_(model), cut_(cut), options_(options), job_(job), bakes_(options.file) {}
+        : model_(model),
+          options_(options),
+          job_(job),
+          bakes_(options.file),
+          all_(model, cut, options.most_triangles, job) {}
 
     /// The reason why there is none; "" when lights() are found.
     std::string run() {
-        const std::string reason = collect();
-        if (!reason.empty())
-            return "There is too much in the scene to find what hides the sky: " + reason;
+        if (!all_.too_much().empty())
+            return "There is too much in the scene to find what hides the sky: " + all_.too_much();
+        rays_ = sky_rays(options_.rays, all_.triangles());
         find_keys();
         std::string without_rays;
         if (baked()) {
@@ -136,142 +85,13 @@ private:
         Hash key = 0;
     };
 
-    bool walk(ObjectIndex object, const Affine& world, RayMask hidden, bool moves) {
-        // Groups that place nothing, twice in each other over and over, have no leaves.
-        if ((++visits_ & 1023u) == 0)
-            job_.check();
-        if (object >= model_.objects.size() || visits_ > 2 * kMostLeaves ||
-            leaves_.size() >= kMostLeaves)
-            return false;
-        const Object& here = model_.objects[object];
-        moves = moves || here.deforms;
-        if (here.representations.empty())
-            return true;
-        const Representation& finest = here.representations[0];
-        if (finest.summary.kind != Kind::Assembly) {
-            SkyLeaf leaf{object, world, !moves && (hidden & kShadowRays) == 0};
-            leaf.hides = make_invertible(leaf.world) && leaf.hides;  // as it is drawn
-            leaves_.push_back(leaf);
-            return true;
-        }
-        if (!finest.resident())
-            return true;
-        for (const Placement& placement : finest.assembly().placements) {
-            if (!walk(placement.object, world * placement.transform,
-                      static_cast<RayMask>(hidden | placement.hidden), moves))
-                return false;
-        }
-        return true;
-    }
-
-    /// How much is too much; "" when it is not.
-    std::string collect() {
-        // Whether a node is below something that moves, for parents come before children.
-        std::vector<uint8_t> moves(cut_.nodes.size(), 0);
-        for (size_t i = 0; i < cut_.nodes.size(); ++i) {
-            const choose::CutNode& node = cut_.nodes[i];
-            const bool above = node.parent != choose::kNoParent && moves[node.parent] != 0;
-            moves[i] = above || model_.objects.at(node.object).deforms ? 1 : 0;
-        }
-        for (const uint32_t index : cut_.chosen) {
-            if ((things_.size() & 1023u) == 0)
-                job_.check();
-            const choose::CutNode& node = cut_.nodes.at(index);
-            const Object& object = model_.objects.at(node.object);
-            SkyThing thing;
-            thing.representation = &object.representations.at(node.lod);
-            thing.world = cut_.world(node);
-            thing.seen = make_invertible(thing.world);
-            thing.moves = moves[index] != 0;
-            thing.group = object.group();
-            thing.first = static_cast<uint32_t>(leaves_.size());
-            if (!walk(node.object, cut_.world(node), node.hidden, thing.moves))
-                return "more than " + grouped(kMostLeaves) + " things";
-            things_.push_back(thing);
-        }
-        uint64_t triangles = 0;
-        Hasher scene;
-        scene.value(kBakeVersion);
-        for (const SkyLeaf& leaf : leaves_) {
-            const RepresentationSummary& summary = finest_of(leaf).summary;
-            PlacedMesh& mesh = placed_[summary.hash];
-            mesh.triangles = summary.cost.triangles;
-            if (mesh.count++ == 0)
-                triangles += mesh.triangles;
-            if (!leaf.hides)
-                continue;
-            ++hiding_;
-            scene.value(summary.hash);
-            hash_transform(scene, leaf.world);
-            sizes_ += transformed(summary.bound, leaf.world).radius;
-        }
-        scene_hash_ = scene.result();
-        triangles_ = triangles;
-        rays_ = sky_rays(options_.rays, triangles);
-        choose_copied();
-        return triangles <= options_.most_triangles
-                   ? ""
-                   : grouped(triangles) + " distinct triangles, of " +
-                         grouped(options_.most_triangles) + " at most";
-    }
-
-    const Representation& finest_of(const SkyLeaf& leaf) const {
-        return model_.objects[leaf.object].representations[0];
-    }
-
-    /// The finest level of what a thing is, or the stand-in that it is.
-    const Representation& finest_of(const SkyThing& thing) const {
-        return thing.group ? *thing.representation : finest_of(leaves_[thing.first]);
-    }
-
-    bool skipped(const SkyThing& thing) const {
-        return thing.representation->summary.kind == Kind::Assembly || !thing.seen;
-    }
-    /// Finds the meshes whose copies all have shares of their own: those of few placements, and
-    /// of the others the smallest.
-    void choose_copied() {
-        std::vector<std::pair<uint64_t, Hash>> order;  // with the triangles of all copies
-        for (const auto& [hash, mesh] : placed_) {
-            if (mesh.count > kPlacementGrades)
-                order.emplace_back(mesh.count * mesh.triangles, hash);
-        }
-        std::sort(order.begin(), order.end());
-        double rest = kCopiedTriangles + kCopiedShare * static_cast<double>(triangles_);
-        for (const auto& [triangles, hash] : order) {
-            rest -= static_cast<double>(triangles);
-            if (rest < 0)
-                break;
-            placed_[hash].copied = true;
-        }
-    }
-
-    /// Whether a thing's shares are found where it stands.
-    bool in_place(const SkyThing& thing) const {
-        if (thing.moves || thing.representation->summary.kind != Kind::Mesh)
-            return false;
-        if (thing.group)
-            return stand_ins_.at(thing.representation->summary.hash) == 1;
-        const PlacedMesh& mesh = placed_.at(finest_of(leaves_[thing.first]).summary.hash);
-        return mesh.count <= kPlacementGrades || mesh.copied;
-    }
-
-    /// The triangles that splits may add to something where it stands: large things have more of
-    /// them, whatever the cut draws.
-    size_t splits_of(const SkyThing& thing) const {
-        if (!thing.group && placed_.at(finest_of(leaves_[thing.first]).summary.hash).count > 1)
-            return 0;
-        const double size = transformed(thing.representation->summary.bound, thing.world).radius;
-        const double all = kSplitTriangles + kSplitShare * static_cast<double>(triangles_);
-        return sizes_ > 0 ? static_cast<size_t>(limited(size / sizes_, 0, 1) * all) : 0;
-    }
-
     Hash key_of(const Representation& representation, const SkyThing* placed) const {
         Hasher hasher;
         const RepresentationSummary& summary = representation.summary;
         hasher.value(kBakeVersion).value(rays_).value(summary.hash);
         hasher.value(summary.cost.triangles);
         if (placed != nullptr) {
-            hasher.value(scene_hash_).value(summary.max_error).value(splits_of(*placed));
+            hasher.value(all_.scene()).value(summary.max_error).value(all_.splits_of(*placed));
             hash_transform(hasher, placed->world);
         }
         return hasher.result();
@@ -279,26 +99,23 @@ private:
 
     /// Finds what was kept, and lists what was not.
     void find_keys() {
-        for (const SkyThing& thing : things_) {
-            if (thing.group)
-                ++stand_ins_[thing.representation->summary.hash];
-        }
-        shares_of_.resize(things_.size(), nullptr);
-        means_of_.resize(things_.size(), {nullptr, 0});
-        for (size_t i = 0; i < things_.size(); ++i) {
-            const SkyThing& thing = things_[i];
-            if (skipped(thing))
+        shares_of_.resize(all_.things().size(), nullptr);
+        means_of_.resize(all_.things().size(), {nullptr, 0});
+        for (size_t i = 0; i < all_.things().size(); ++i) {
+            const SkyThing& thing = all_.things()[i];
+            if (all_.skipped(thing))
                 continue;
-            const bool once = in_place(thing);
+            const bool once = all_.in_place(thing);
             if (thing.representation->summary.kind == Kind::Mesh)
                 shares_of_[i] = want_shares(thing, once);
             if (!once && !thing.moves)
                 want_means(i);
         }
         for (uint32_t i = 0; i < numbers_.size(); ++i) {
-            const auto wanted = wanted_means_.find({finest_of(leaves_[i]).summary.hash, false});
+            const auto wanted =
+                wanted_means_.find({all_.finest_of(all_.leaves()[i]).summary.hash, false});
             if (wanted != wanted_means_.end())
-                wanted->second.places[numbers_[i]] = leaves_[i].world;
+                wanted->second.places[numbers_[i]] = all_.leaves()[i].world;
         }
         for (auto& [key, wanted] : wanted_means_)
             find_means(key.first, wanted);
@@ -334,8 +151,8 @@ private:
     /// The means are those of all placements of the finest level, so that grades do not depend on
     /// which of them the cut draws; those of a stand-in are of the cut's.
     void want_means(size_t i) {
-        const SkyThing& thing = things_[i];
-        const Representation& representation = finest_of(thing);
+        const SkyThing& thing = all_.things()[i];
+        const Representation& representation = all_.finest_of(thing);
         WantedMeans& wanted = wanted_means_[{representation.summary.hash, thing.group}];
         wanted.representation = &representation;
         if (thing.group) {
@@ -349,24 +166,25 @@ private:
     /// The number of a leaf among those of its finest level.
     size_t number_of_leaf(Hash hash, uint32_t leaf) {
         if (numbers_.empty()) {
-            numbers_.resize(leaves_.size());
+            numbers_.resize(all_.leaves().size());
             std::unordered_map<Hash, uint32_t> counts;
-            for (size_t i = 0; i < leaves_.size(); ++i)
-                numbers_[i] = counts[finest_of(leaves_[i]).summary.hash]++;
+            for (size_t i = 0; i < all_.leaves().size(); ++i)
+                numbers_[i] = counts[all_.finest_of(all_.leaves()[i]).summary.hash]++;
         }
-        wanted_means_[{hash, false}].places.resize(placed_.at(hash).count);
+        wanted_means_[{hash, false}].places.resize(all_.placements_of(hash));
         return numbers_[leaf];
     }
 
     /// The rays that tell what is around one placement: as many whatever is known already.
     int mean_rays() const {
-        return static_cast<int>(limited(kMostMeanRays / static_cast<double>(leaves_.size() + 1),
-                                        kFewestMeanRays, kMeanRays));
+        return static_cast<int>(
+            limited(kMostMeanRays / static_cast<double>(all_.leaves().size() + 1), kFewestMeanRays,
+                    kMeanRays));
     }
 
     void find_means(Hash hash, WantedMeans& wanted) {
         Hasher hasher;
-        hasher.value(scene_hash_).value(hash).value(wanted.places.size());
+        hasher.value(kBakeVersion).value(all_.scene()).value(hash).value(wanted.places.size());
         hasher.value(mean_rays()).value(wanted.representation->summary.max_error);
         for (const Affine& world : wanted.places)
             hash_transform(hasher, world);
@@ -383,13 +201,13 @@ private:
         if (options_.load_finest)
             options_.load_finest();
         std::vector<light::SkyOccluder> occluders;
-        occluders.reserve(hiding_);
+        occluders.reserve(all_.leaves().size());
         std::vector<const Representation*> all;
-        for (const SkyLeaf& leaf : leaves_) {
+        for (const SkyLeaf& leaf : all_.leaves()) {
             if (!leaf.hides)
                 continue;
-            occluders.push_back({&finest_of(leaf), leaf.world});
-            all.push_back(&finest_of(leaf));
+            occluders.push_back({&all_.finest_of(leaf), leaf.world});
+            all.push_back(&all_.finest_of(leaf));
         }
         for (const auto& [key, wanted] : missing_)
             all.push_back(wanted->representation);
@@ -448,7 +266,7 @@ private:
                 request.world = wanted.placed->world;
                 request.around = &scene;
                 request.error = wanted.representation->summary.max_error;
-                request.splits = splits_of(*wanted.placed);
+                request.splits = all_.splits_of(*wanted.placed);
             }
             wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
             progress.add(work_of(wanted, rays_));
@@ -499,9 +317,9 @@ private:
                                                        : 1);
             wanted.ratios = graded(wanted.ratios);
         }
-        lights_.resize(things_.size());
-        means_.resize(things_.size(), 1);
-        for (size_t i = 0; i < things_.size(); ++i) {
+        lights_.resize(all_.things().size());
+        means_.resize(all_.things().size(), 1);
+        for (size_t i = 0; i < all_.things().size(); ++i) {
             const auto& [means, number] = means_of_[i];
             if (means != nullptr)
                 means_[i] = means->found[number].placed;
@@ -525,10 +343,10 @@ private:
     /// Other levels have one factor each: those of one finest level are graded, as its copies are.
     void grade_means() {
         std::unordered_map<Hash, std::vector<size_t>> alike;
-        for (size_t i = 0; i < things_.size(); ++i) {
-            const SkyThing& thing = things_[i];
-            if (!skipped(thing))
-                alike[finest_of(thing).summary.hash].push_back(i);
+        for (size_t i = 0; i < all_.things().size(); ++i) {
+            const SkyThing& thing = all_.things()[i];
+            if (!all_.skipped(thing))
+                alike[all_.finest_of(thing).summary.hash].push_back(i);
         }
         for (const auto& [hash, numbers] : alike) {
             std::vector<double> means;
@@ -542,20 +360,11 @@ private:
     }
 
     const Model& model_;
-    const choose::Cut& cut_;
     const SkyOcclusionOptions& options_;
     const Job& job_;
     light::SkyBakes bakes_;
-    std::vector<SkyLeaf> leaves_;
-    std::vector<SkyThing> things_;                  // by position in cut.chosen
-    std::unordered_map<Hash, PlacedMesh> placed_;   // leaves by finest level
-    std::unordered_map<Hash, uint32_t> stand_ins_;  // things by stand-in
-    uint32_t hiding_ = 0;
-    int rays_ = 0;            // that tell the share of a corner
-    uint64_t triangles_ = 0;  // of all distinct finest levels
-    size_t visits_ = 0;
-    double sizes_ = 0;  // radii of all that hides the sky
-    Hash scene_hash_ = 0;
+    SkyThings all_;
+    int rays_ = 0;                   // that tell the share of a corner
     std::vector<uint32_t> numbers_;  // by leaf
     std::map<Hash, WantedShares> wanted_shares_;
     std::map<std::pair<Hash, bool>, WantedMeans> wanted_means_;  // with: a stand-in
