@@ -36,9 +36,10 @@ constexpr size_t kFew = 16;
 // The share of an edge's length in its triangle's longest from which it is split with it.
 // Taste: a smaller value makes more triangles, a larger one thinner ones.
 constexpr double kLongEnough = 0.7;
-// The rays of a triangle, at least.
+// The rays of a triangle, at least, and the part of a corner's that they are where these are few.
 // Taste: more tell better where to split.
 constexpr int kFewestRays = 8;
+constexpr int kFewestPart = 8;  // Taste: as kFewestRays, the other way round
 // The steps of a unit normal's coordinates within which flat triangles face the same way.
 // Taste: a larger value smooths less over folds.
 constexpr double kNormalSteps = 32;
@@ -117,7 +118,9 @@ private:
         for (int corner = 0; corner < 3; ++corner)
             fewest = std::min(fewest, around_[split_.welded()[t[corner]]]);
         const int wanted = request_.rays / static_cast<int>(std::max(fewest, 1u));
-        return std::clamp(wanted, std::min(kFewestRays, request_.rays), request_.rays);
+        // Two are the fewest, for rays are cast in pairs.
+        const int least = std::clamp(request_.rays / kFewestPart, 2, kFewestRays);
+        return std::max(wanted, least);
     }
 
     void sample(const std::vector<uint32_t>& triangles) {
@@ -387,7 +390,7 @@ std::optional<std::vector<SkyMeans>> means_of(std::string_view bytes, size_t cou
     std::vector<SkyMeans> out(count);
     for (size_t i = 0; i < count; ++i) {
         std::memcpy(pair, bytes.data() + i * sizeof pair, sizeof pair);
-        // What is around a thing hides more of the sky, never less.
+        // Things around another one hide more of its sky, never less.
         if (!(pair[0] >= 0 && pair[0] <= pair[1] && pair[1] <= 1))
             return {};
         out[i] = {pair[0], pair[1]};
