@@ -348,7 +348,7 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         // Rays are as dense as the surface is before it is placed, which may stretch some of it.
         const double own = areas[triangle] - (triangle > 0 ? areas[triangle - 1] : 0);
         const double weight = own > 0 ? placed->area / own : 0;
-        // Every second point of the sequence lies in one half of each of its axes: both sides have
+        // Every second point of the sequence lies in one half of its first axis: both sides have
         // all points.
         const SkySampler::SkyRay ray = sampler.ray(
             mesh, triangle, *placed, static_cast<uint32_t>(both ? i / 2 : i), both && i % 2 == 1);
