@@ -13,6 +13,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
@@ -237,6 +238,29 @@ private:
         return true;
     }
 
+    /// The outline of a mask as finely as it is seen. Of a crowd of leaves it is coarser where it
+    /// would have too many corners: rays take ten times as long through masks as past what is cut
+    /// out of them.
+    MaskOutlinePtr outline_that_fits(const ShownMask& mask, const image::MaskTexels& texels,
+                                     bool crowd) const {
+        // The factor on the tolerance, and the part of the picture's side, up to which it is coarser.
+        // Taste: leaves in a crowd keep their area; larger ones show corners of single leaves.
+        constexpr double kCoarser = 16;
+        constexpr double kOfSide = 1.0 / 16;
+        const double finest = std::max(1.0, mask.tolerance);
+        const double most =
+            std::min(kCoarser * finest, kOfSide * std::min(texels.width, texels.height));
+        ShownMask shown = mask;
+        MaskOutlinePtr found = outlines_.outline(shown, job_);
+        for (double tolerance = finest; crowd && !found && tolerance < most;) {
+            // Law: half of a halving.
+            tolerance = std::min(tolerance * std::numbers::sqrt2, most);
+            shown.tolerance = tolerance;
+            found = outlines_.outline(shown, job_);
+        }
+        return found;
+    }
+
     /// False: there is nothing to cut.
     bool find_outline(CutSlot& slot) const {
         const Material& material = *slot.material;
@@ -271,11 +295,16 @@ private:
         if (!slot.painted && (clip || deep || count.is_mask())) {
             const std::optional<double> cutoff =
                 clip ? std::optional(limited(material.alpha_cutoff, 0, 1)) : std::nullopt;
+            // The triangles of a crowd, each of which shows one picture at most: fences repeat theirs.
+            // Taste: a larger value leaves the shapes of smaller bushes, for time.
+            constexpr size_t kCrowd = 64;
+            const bool crowd = slot.triangles.size() >= kCrowd &&
+                               pictures <= static_cast<double>(slot.triangles.size());
             slot.full = clip ? *cutoff <= 0
                              : count.sure == count.seen && count.clear == 0 && count.mean > 0.5;
             if (!slot.full)
-                slot.outline =
-                    outlines_.outline({texture, cutoff, seen, slot.tolerance, most}, job_);
+                slot.outline = outline_that_fits({texture, cutoff, seen, slot.tolerance, most},
+                                                 *texels, crowd);
             slot.opaque = slot.full || slot.outline;
         }
         if (!slot.opaque)

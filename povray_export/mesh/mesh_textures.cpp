@@ -150,6 +150,9 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
                      model.materials.size());
             slot.material = model.materials[index];
         }
+        if (slot.material.alpha_mode != AlphaMode::Opaque &&
+            slot.material.alpha_texture.channel == TextureChannel::Alpha)
+            slot.surface.mask = slot.material.alpha_texture.picture;
         if (number < cut_.opaque.size() && cut_.opaque[number] != 0) {
             slot.material.alpha_mode = AlphaMode::Opaque;
             slot.material.alpha_texture = {};

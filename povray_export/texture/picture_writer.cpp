@@ -23,7 +23,7 @@ namespace {
 // The version of baked pictures: raised whenever what is baked changes, for files are found again
 // by their name alone.
 // Law: part of every file's hash.
-constexpr uint32_t kBakeVersion = 2;
+constexpr uint32_t kBakeVersion = 3;
 
 constexpr std::string_view kNameComment = "// i/";
 
@@ -51,6 +51,10 @@ int png_color_type(const std::string& bytes) {
     return static_cast<unsigned char>(bytes[25]);
 }
 
+bool is_number(PigmentContent content) {
+    return content == PigmentContent::Number || content == PigmentContent::Alpha;
+}
+
 /// Whether POV-Ray may read the picture's own file: it shows the texture's very values.
 bool usable_as_is(const Texture& texture, PigmentContent content) {
     const Picture& picture = *texture.picture;
@@ -59,8 +63,7 @@ bool usable_as_is(const Texture& texture, PigmentContent content) {
         return false;
     const bool png = picture.format == PictureFormat::Png;
     const int type = png ? png_color_type(picture.bytes) : -1;
-    if (content == PigmentContent::Color ||
-        content == PigmentContent::Filter)  // alpha would make holes
+    if (!is_number(content))  // alpha would make holes
         return texture.channel == TextureChannel::Color &&
                (!png || type == 0 || type == 2 || type == 3);
     // POV-Ray weighs colors its own way: only a gray picture is the number everybody means.
@@ -69,10 +72,6 @@ bool usable_as_is(const Texture& texture, PigmentContent content) {
 
 int halved(int side, int halvings) {
     return std::max(1, side >> halvings);
-}
-
-bool is_number(PigmentContent content) {
-    return content == PigmentContent::Number || content == PigmentContent::Alpha;
 }
 
 /// Whether the numbers of a picture are a mask's.
@@ -128,7 +127,7 @@ std::string baked(const Texture& texture, PigmentContent content, int halvings) 
             const glm::dvec3 color = glm::clamp(image::color_of(texture, texel), 0.0, 1.0);
             for (int c = 0; c < 3; ++c)
                 to.pixels[i + static_cast<size_t>(c)] = static_cast<float>(color[c]);
-            to.pixels[i + 3] = from.pixels[i + 3];
+            to.pixels[i + 3] = content == PigmentContent::Leaf ? from.pixels[i + 3] : 1;
         } else {
             const double number = std::clamp(image::number_of(texture, texel), 0.0, 1.0);
             for (size_t c = 0; c < 3; ++c)
@@ -140,6 +139,8 @@ std::string baked(const Texture& texture, PigmentContent content, int halvings) 
     const bool mask = halvings > 0 && content == PigmentContent::Alpha && is_mask(to);
     if (halvings > 0)
         to = image::reduced(to, halved(to.width, halvings), halved(to.height, halvings));
+    if (content == PigmentContent::Leaf)
+        image::spread_into_clear(to);
     for (size_t i = 3; i < to.pixels.size(); i += 4)
         to.pixels[i] = 1;  // POV-Ray would make holes
     if (mask)
@@ -271,8 +272,7 @@ std::string PictureWriter::file_reference(const Texture& texture, PigmentContent
     const PictureFile& file = files_.at(name);
     const bool jpeg = file.as_is && texture.picture->format == PictureFormat::Jpeg;
     const bool encoded =
-        file.as_is ? texture.picture->space == ColorSpace::Srgb
-                   : content == PigmentContent::Color || content == PigmentContent::Filter;
+        file.as_is ? texture.picture->space == ColorSpace::Srgb : !is_number(content);
     return (jpeg ? "jpeg \"" : "png \"") + name + (encoded ? "\" gamma srgb" : "\" gamma 1.0");
 }
 

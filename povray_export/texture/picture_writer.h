@@ -21,6 +21,7 @@ enum class PigmentContent : uint8_t {
     Filter = 2,  // its color as a filter of all that goes through it
     Height = 3,  // the heights of a normal map: height_map()
     Alpha = 4,   // as Number; a mask that is made smaller stays one of the same mean
+    Leaf = 5,    // its color, where its alpha shows it; elsewhere that of what is around
 };
 
 /// The texture coordinates that a surface uses. A picture outside 0...1 costs POV-Ray time when it

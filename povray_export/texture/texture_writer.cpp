@@ -307,7 +307,8 @@ private:
             if (painted > 0)
                 texture.offset *= paint / painted;
             texture.scale *= (painted > 0 ? paint / painted : glm::dvec3(1.0)) / scale;
-            out.pigment += pigment(texture, PigmentContent::Color);
+            const bool leaf = texture.picture == surface_.mask;
+            out.pigment += pigment(texture, leaf ? PigmentContent::Leaf : PigmentContent::Color);
         } else {
             glm::dvec3 color = base * paint;
             for (int i = 0; i < 3; ++i) {

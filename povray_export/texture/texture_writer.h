@@ -16,6 +16,7 @@ namespace lodestone::povray {
 struct TexturedSurface {
     bool uvs = false;  // without texture coordinates every texture is its mean
     UvRange range;
+    PicturePtr mask;        // the picture whose alpha says where it is, or where it was cut out
     glm::dvec4 color{1.0};  // color of its vertices, linear; counts where the material uses it
     double sky = 1;         // share of a uniform sky's light that reaches it
     bool flat = false;      // true: in one plane with to_uv; only there bumps are shown

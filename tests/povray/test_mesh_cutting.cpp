@@ -380,6 +380,25 @@ TEST(MeshCutting, NoiseNetsAndHugeTilingsKeepTheirTextures) {
     EXPECT_FALSE(cut(card(1e5), leaf(disk())).any);
 }
 
+TEST(MeshCutting, ACrowdOfFineLeavesTookTenTimesAsLongThroughTheirTextures) {
+    // A comb of 40 fine teeth on each of 300 pictures: more triangles than pay.
+    const Texture comb = alpha_of(256, [](double u, double v) {
+        const double wide = 0.3 * v;
+        return u < 0.9 && std::abs(std::fmod(20 * u, 1.0) - 0.5) < wide && v < 0.95 ? 1 : 0;
+    });
+    Mesh mesh;
+    for (int i = 0; i < 300; ++i)
+        append(mesh, card(), {glm::dmat3(1.0), {0, 0, 0.1 * i}});
+    const CutMesh found = cut(mesh, leaf(comb));
+    EXPECT_EQ(found.opaque, std::vector<uint8_t>{1});
+    EXPECT_LT(found.mesh.triangles.size(), 32768u);
+    EXPECT_NEAR(surface_area(found.mesh) / 300, comb.picture->mean.w, 0.1 * comb.picture->mean.w);
+    // A fence repeats its picture, and is looked through.
+    EXPECT_NE(cut(card(20), leaf(comb)).opaque, std::vector<uint8_t>{1});
+    // One alone is cut as finely as it is seen.
+    EXPECT_GT(cut(card(), leaf(comb)).mesh.triangles.size(), found.mesh.triangles.size() / 300);
+}
+
 TEST(MeshCutting, HostileCoordinatesAreNotCut) {
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
                             std::numeric_limits<float>::infinity(), 1e30f, -1e9f}) {

@@ -165,6 +165,42 @@ TEST(PovrayTextureError, HalvingKeepsTheMeanLight) {
     }
 }
 
+/// The only picture that a writer writes.
+image::Image only_picture(const PictureWriter& writer, const std::string& name) {
+    const std::filesystem::path folder = own_scratch() / name;
+    std::filesystem::remove_all(folder);
+    PictureFolder files(folder);
+    writer.write(files);
+    const std::filesystem::directory_iterator first(folder / "i");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "i"), {}), 1);
+    return image::read(first->path());
+}
+
+TEST(PovrayTextureError, CoarselyCutLeavesShowedTheBlackBesideThem) {
+    // A leaf on the left, a red dot on the right, and black that is clear, or next to it.
+    std::vector<glm::vec4> texels(size_t{kSide} * kSide, glm::vec4(0, 0, 0, 0.01));
+    for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < 20; ++x)
+            texels[static_cast<size_t>(y * kSide + x)] = glm::vec4(0.2, 0.6, 0.2, 1);
+    }
+    texels[static_cast<size_t>(100 * kSide + 200)] = glm::vec4(1, 0, 0, 1);
+    const Texture texture = texture_of(scenes::picture(kSide, texels));
+    const auto green_at = [&](PigmentContent content, int x, int y) {
+        PictureWriter writer;
+        writer.pigment(texture, content, {});
+        const image::Image found = only_picture(writer, "leaf");
+        EXPECT_EQ(found.width, kSide);
+        return decode_srgb(found.pixels[4 * static_cast<size_t>(y * kSide + x) + 1]);
+    };
+    EXPECT_NEAR(green_at(PigmentContent::Leaf, 10, 50), 0.6, 0.01);
+    EXPECT_NEAR(green_at(PigmentContent::Leaf, 25, 50), 0.6, 0.08);
+    EXPECT_GT(green_at(PigmentContent::Leaf, 60, 200), 0.4);
+    EXPECT_LT(green_at(PigmentContent::Leaf, 203, 101), 0.1);
+    EXPECT_EQ(green_at(PigmentContent::Leaf, 200, 100), 0);
+    // Where alpha is something else its colors stay.
+    EXPECT_NEAR(green_at(PigmentContent::Color, 25, 50), 0, 0.01);
+}
+
 TEST(PovrayTextureError, LeavesMadeSmallerHadFringesOfWhatIsClear) {
     // One texel in three is a green leaf; what is clear around it is black, or white.
     for (const float clear : {0.0f, 1.0f}) {
@@ -175,19 +211,13 @@ TEST(PovrayTextureError, LeavesMadeSmallerHadFringesOfWhatIsClear) {
         PictureWriter writer;
         UvRange range;
         range.texel = 4.0 / kSide;
-        writer.pigment(texture, PigmentContent::Color, range);
-        const std::filesystem::path folder = own_scratch() / (clear > 0 ? "white" : "black");
-        std::filesystem::remove_all(folder);
-        PictureFolder files(folder);
-        writer.write(files);
-        for (const auto& entry : std::filesystem::directory_iterator(folder / "i")) {
-            const image::Image found = image::read(entry.path());
-            EXPECT_EQ(found.width, kSide / 4);
-            for (size_t i = 0; i < found.pixels.size(); i += 4) {
-                EXPECT_NEAR(decode_srgb(found.pixels[i]), 0.2, 0.01);
-                EXPECT_NEAR(decode_srgb(found.pixels[i + 1]), 0.6, 0.01);
-                EXPECT_EQ(found.pixels[i + 3], 1.0f);
-            }
+        writer.pigment(texture, PigmentContent::Leaf, range);
+        const image::Image found = only_picture(writer, "smaller");
+        EXPECT_EQ(found.width, kSide / 4);
+        for (size_t i = 0; i < found.pixels.size(); i += 4) {
+            EXPECT_NEAR(decode_srgb(found.pixels[i]), 0.2, 0.01);
+            EXPECT_NEAR(decode_srgb(found.pixels[i + 1]), 0.6, 0.01);
+            EXPECT_EQ(found.pixels[i + 3], 1.0f);
         }
     }
 }

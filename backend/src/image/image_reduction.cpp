@@ -53,4 +53,35 @@ Image reduced(const Image& from, int width, int height) {
     return to;
 }
 
+void spread_into_clear(Image& image) {
+    // The alpha from which on a texel's own color is known.
+    // Taste: what is fainter is often rounded, or the background's; a larger value blurs edges.
+    constexpr float kKnown = 0.1f;
+    bool clear = false;
+    for (size_t i = 3; i < image.pixels.size(); i += 4) {
+        if (image.pixels[i] >= kKnown)
+            continue;
+        image.pixels[i] = 0;
+        clear = true;
+    }
+    if (!clear || image.size() <= 1)
+        return;
+    Image small = reduced(image, (image.width + 1) / 2, (image.height + 1) / 2);
+    for (size_t i = 3; i < small.pixels.size(); i += 4)
+        small.pixels[i] = small.pixels[i] > 0 ? 1.0f : 0.0f;
+    spread_into_clear(small);
+    float* at = image.pixels.data();
+    for (int y = 0; y < image.height; ++y) {
+        const auto row = static_cast<size_t>(static_cast<int64_t>(y) * small.height / image.height);
+        for (int x = 0; x < image.width; ++x, at += 4) {
+            if (at[3] > 0)
+                continue;
+            const auto column =
+                static_cast<size_t>(static_cast<int64_t>(x) * small.width / image.width);
+            const size_t around = 4 * (row * static_cast<size_t>(small.width) + column);
+            std::copy_n(small.pixels.begin() + static_cast<ptrdiff_t>(around), 3, at);
+        }
+    }
+}
+
 }  // namespace lodestone::image

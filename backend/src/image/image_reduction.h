@@ -11,4 +11,8 @@ namespace lodestone::image {
 /// often black or white, does not fringe what is seen.
 Image reduced(const Image& from, int width, int height);
 
+/// Gives texels that are clear, or nearly, the color of what is around them, and no alpha: the mean
+/// of the smallest of blocks, each of four smaller ones, in which something is there.
+void spread_into_clear(Image& image);
+
 }  // namespace lodestone::image
