@@ -2,7 +2,7 @@
 #include "povray_export/mesh/triangle_cutter.h"
 
 #include "base/hash.h"
-#include "base/maths.h"
+#include "povray_export/mesh/plane_ranges.h"
 
 #include <algorithm>
 #include <array>
@@ -31,16 +31,6 @@ bool repeats(const Texture& texture) {
            texture.extension == TextureExtension::Mirror;
 }
 
-struct PlaneBox {
-    glm::dvec2 low;
-    glm::dvec2 high;
-};
-
-PlaneBox box_of(const glm::dvec2 (&at)[3]) {
-    return {{std::min({at[0].x, at[1].x, at[2].x}), std::min({at[0].y, at[1].y, at[2].y})},
-            {std::max({at[0].x, at[1].x, at[2].x}), std::max({at[0].y, at[1].y, at[2].y})}};
-}
-
 /// The first and the last repetition of a picture along an axis that a range meets.
 std::pair<int64_t, int64_t> tiles(double low, double high) {
     const auto first = static_cast<int64_t>(std::floor(low + kThin));
@@ -51,32 +41,6 @@ std::pair<int64_t, int64_t> tiles(double low, double high) {
 /// Whether a repetition is turned around.
 bool mirrored(const Texture& texture, int64_t tile) {
     return texture.extension == TextureExtension::Mirror && (tile & 1) != 0;
-}
-
-/// A range of one coordinate; `low` above `high`: it is empty.
-struct PlaneRange {
-    double low = kInfinity;
-    double high = -kInfinity;
-};
-
-/// What of a triangle lies between two heights, along the other axis.
-PlaneRange range_between(const glm::dvec2 (&at)[3], double bottom, double top) {
-    PlaneRange out;
-    const auto add = [&](double x) {
-        out.low = std::min(out.low, x);
-        out.high = std::max(out.high, x);
-    };
-    for (int k = 0; k < 3; ++k) {
-        const glm::dvec2& a = at[k];
-        const glm::dvec2& b = at[(k + 1) % 3];
-        if (a.y >= bottom && a.y <= top)
-            add(a.x);
-        for (const double y : {top, bottom}) {
-            if ((a.y < y) != (b.y < y))
-                add(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
-        }
-    }
-    return out;
 }
 
 /// Flags the blocks of one repetition that a triangle meets; `at` is relative to it.
@@ -98,26 +62,6 @@ void note_tile(image::SeenTexels& seen, const glm::dvec2 (&at)[3]) {
         std::fill(flags + index(range.low, seen.columns),
                   flags + index(range.high, seen.columns) + 1, uint8_t{1});
     }
-}
-
-/// The part of a line's length, from `from` to `to`, that is inside a triangle.
-PlaneRange range_inside(const glm::dvec2& from, const glm::dvec2& to, const glm::dvec2 (&at)[3]) {
-    PlaneRange out{0, 1};
-    for (int k = 0; k < 3; ++k) {
-        const glm::dvec2 side = at[(k + 1) % 3] - at[k];
-        const auto left = [&](const glm::dvec2& p) {
-            return side.x * (p.y - at[k].y) - side.y * (p.x - at[k].x);
-        };
-        const double a = left(from);
-        const double b = left(to);
-        if (a < 0 && b < 0)
-            return {};
-        if (a < 0)
-            out.low = std::max(out.low, a / (a - b));
-        else if (b < 0)
-            out.high = std::min(out.high, a / (a - b));
-    }
-    return out;
 }
 
 /// A corner of a polygon that is cut, and the edge of the outline's triangle that it is on.

@@ -37,6 +37,24 @@ constexpr uint64_t kTrianglesOfFile = 1000;
 /// Taste: a larger value writes middle scenes on one thread.
 constexpr uint64_t kFewTriangles = 50'000;
 
+/// The triangles that masks of all files together may become, where these have `triangles` without.
+uint64_t most_cut_triangles(uint64_t budget, uint64_t used, uint64_t triangles) {
+    // Law: the bytes of a triangle of a cut-out mask in POV-Ray, as measured.
+    constexpr uint64_t kBytes = 245;
+    // The part of a budget that they may take beyond it.
+    // Taste: a larger value cuts more masks, for memory nobody wanted to give.
+    constexpr uint64_t kPart = 8;
+    // The triangles that they may become without a budget.
+    // Taste: 250 MB; a larger value cuts more masks.
+    constexpr uint64_t kFew = uint64_t{1} << 20u;
+    // The triangles that they may become for each that is there already.
+    // Taste: five times what the scene takes; a larger value cuts more masks.
+    constexpr uint64_t kEach = 4;
+    if (budget == 0)
+        return kFew + kEach * triangles;
+    return (budget - std::min(budget, used) + budget / kPart) / kBytes;
+}
+
 int exponent_of(double texel) {
     // The largest exponent of a texel's size, in both directions.
     // Taste: beyond it nothing can be told apart.
@@ -82,6 +100,7 @@ size_t IncludeFiles::own(size_t index) const {
     return index;
 }
 
+/// The triangles of all files, masks as they are before they are cut.
 uint64_t IncludeFiles::triangles() const {
     uint64_t sum = 0;
     for (const IncludeFile& include : files_)
@@ -136,7 +155,7 @@ void IncludeFiles::limit_cut(uint64_t most) {
     }
 }
 
-void IncludeFiles::name(uint64_t most, const Job& job) {
+void IncludeFiles::name(uint64_t budget, uint64_t used, const Job& job) {
     parallel_for(files_.size(), [&](size_t i) {
         IncludeFile& include = files_[i];
         if (include.options.outline &&
@@ -155,7 +174,7 @@ void IncludeFiles::name(uint64_t most, const Job& job) {
             include.options.outline.reset();
     });
     merge();
-    limit_cut(most);
+    limit_cut(most_cut_triangles(budget, used, triangles()));
     for (IncludeFile& include : files_) {
         if (include.pictured)
             include.options.texel = exponent_of(include.texel);

@@ -47,9 +47,9 @@ public:
     void note_texel(size_t index, double texel);
     /// Gives the files their names, once all are added and seen. Files that would only differ in how
     /// masks are cut, while these are not or not differently, become one. Where masks of all files
-    /// would become more than `most` triangles, those that become most are cut no more, but for what
-    /// is clear around them. Files beside r/*.inc keep what is to be cut for the next export.
-    void name(uint64_t most, const Job& job);
+    /// would become more triangles than are left of a memory budget (in bytes; 0: none) of which
+    /// `used` are, those that become most are cut less. Files beside r/*.inc keep what is to be cut for the next export.
+    void name(uint64_t budget, uint64_t used, const Job& job);
     /// Writes r/<16 hex>.inc and the pictures that are not there yet. Throws Error(Io),
     /// Error(Cancelled).
     void write(const Job& job);
@@ -57,8 +57,6 @@ public:
     /// The file that stands for this one, which may be itself.
     size_t own(size_t index) const;
     const IncludeFile& at(size_t index) const { return files_[own(index)]; }
-    /// The triangles of all files, masks as they are before they are cut.
-    uint64_t triangles() const;
     size_t size() const { return files_.size(); }
     /// The text that includes all files, and names those of what is cut.
     std::string statements() const;
@@ -69,6 +67,7 @@ public:
 private:
     void merge();
     CutForecast forecast(Hash name, const IncludeFile& include, const Job& job);
+    uint64_t triangles() const;
     void limit_cut(uint64_t most);
     /// Whether a mesh with texture coordinates shows a material that `is` so.
     bool shows(const Representation& representation, const RepresentationOptions& options,

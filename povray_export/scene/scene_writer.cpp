@@ -237,24 +237,7 @@ private:
                         false, nullptr);
         }
         collect_own();
-        includes_.name(most_cut_triangles(), job_);
-    }
-
-    /// The triangles that masks of all files together may become.
-    uint64_t most_cut_triangles() const {
-        // Measured: the bytes of a triangle of a cut-out mask in POV-Ray.
-        constexpr uint64_t kBytes = 245;
-        // The part of a budget that they may take beyond it.
-        // Taste: a larger value cuts more masks, for memory nobody wanted to give.
-        constexpr uint64_t kPart = 8;
-        // What they may be without a budget, and for each triangle that is there already.
-        // Taste: 250 MB, and five times what the scene takes; a larger value cuts more masks.
-        constexpr uint64_t kFew = uint64_t{1} << 20u;
-        constexpr uint64_t kEach = 4;
-        if (options_.budget == 0)
-            return kFew + kEach * includes_.triangles();
-        return (options_.budget - std::min(options_.budget, cut_.bytes) + options_.budget / kPart) /
-               kBytes;
+        includes_.name(options_.budget, cut_.bytes, job_);
     }
 
     /// The size of a pixel at one occurrence, in metres of its own frame.

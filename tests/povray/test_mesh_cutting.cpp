@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards cut-out masks: what is cut, its area and attributes, and that pictures stay.
-#include "povray/povray_scenes.h"
+#include "povray/mask_cards.h"
 #include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/mesh/triangle_cutter.h"
 
-#include <functional>
 #include <limits>
 
 using namespace lodestone;
@@ -12,46 +11,6 @@ using namespace lodestone::povray;
 using scenes::Builder;
 
 namespace {
-
-using Alpha = std::function<double(double, double)>;  // of picture coordinates, v up
-
-Texture alpha_of(int side, const Alpha& alpha) {
-    std::vector<glm::vec4> texels;
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x)
-            texels.emplace_back(
-                0.2, 0.6, 0.3, std::clamp(alpha((x + 0.5) / side, 1 - (y + 0.5) / side), 0.0, 1.0));
-    }
-    Texture texture;
-    texture.picture = scenes::picture(side, texels);
-    texture.channel = TextureChannel::Alpha;
-    return texture;
-}
-
-/// A disk whose edge is a texel wide.
-Texture disk(int side = 64, double radius = 0.3) {
-    return alpha_of(side, [=](double u, double v) {
-        return 0.5 + (radius - std::hypot(u - 0.5, v - 0.5)) * side;
-    });
-}
-
-Material leaf(const Texture& alpha) {
-    Material material;
-    material.specular = 0;
-    material.base_color_texture = alpha;
-    material.base_color_texture.channel = TextureChannel::Color;
-    material.alpha_texture = alpha;
-    material.alpha_mode = AlphaMode::Blend;
-    return material;
-}
-
-/// A square of one metre on which the picture lies `times` in both directions.
-Mesh card(double times = 1) {
-    Mesh mesh = shapes::quad(1, 1);
-    for (const glm::vec3& at : mesh.positions)
-        mesh.uvs.emplace_back(times * at.x, times * at.y);
-    return mesh;
-}
 
 CutMesh cut(const Mesh& mesh, const Material& material, std::optional<int> outline = {}) {
     Builder builder;
@@ -441,93 +400,6 @@ TEST(MeshCutting, AnExportOutlinesAPictureOnce) {
     EXPECT_EQ(outlines.outline({texture, {}, seen, 1.2}, {}), first);
     EXPECT_NE(outlines.outline({texture, {}, seen, 4}, {}), first);
     EXPECT_EQ(outlines.texels(texture), outlines.texels(texture));
-}
-
-/// Exports the meshes, in the same material, as they are and enlarged 8 times, which shows them
-/// finer.
-ExportReport exported(const std::vector<Mesh>& meshes, const Material& material,
-                      const ExportOptions& options, Problems& problems) {
-    Builder builder;
-    const uint32_t index = builder.material(material);
-    for (const Mesh& mesh : meshes) {
-        const ObjectIndex object = builder.mesh(mesh, {index});
-        builder.place(object, {glm::dmat3(8.0), {0, 0, 0}});
-        builder.place(object, {glm::dmat3(1.0), {0, 0, 1}});
-    }
-    return scenes::write(builder.finish(), scenes::above(), options, problems);
-}
-
-ExportOptions fresh_folder(const char* name) {
-    ExportOptions options;
-    options.folder = own_scratch() / name;
-    std::filesystem::remove_all(options.folder);
-    return options;
-}
-
-TEST(MeshCutting, NearAndFarCopiesBothBelowATexelWereTwoFiles) {
-    Problems problems;
-    EXPECT_EQ(exported({card()}, leaf(disk(16)), fresh_folder("fine"), problems).representations,
-              1u);
-    // A pixel is four texels of the larger one, whose outline is coarser.
-    EXPECT_EQ(
-        exported({card()}, leaf(disk(1024)), fresh_folder("coarse"), problems).representations, 2u);
-    EXPECT_TRUE(problems.empty());
-}
-
-TEST(MeshCutting, ASecondExportFindsWhatIsToBeCut) {
-    const ExportOptions options = fresh_folder("again");
-    Problems problems;
-    const ExportReport first = exported({card()}, leaf(disk(16)), options, problems);
-    EXPECT_GT(first.cut_triangles, 5u);
-    EXPECT_LT(first.cut_triangles, 60u);
-    const auto kept = [&] {
-        std::vector<std::filesystem::path> found;
-        for (const auto& entry : std::filesystem::directory_iterator(options.folder / "r")) {
-            if (entry.path().extension() == ".cut")
-                found.push_back(entry.path());
-        }
-        return found;
-    };
-    ASSERT_EQ(kept().size(), 1u);
-    EXPECT_EQ(exported({card()}, leaf(disk(16)), options, problems).cut_triangles,
-              first.cut_triangles);
-    write_file(kept()[0], "1 77");
-    EXPECT_EQ(exported({card()}, leaf(disk(16)), options, problems).cut_triangles, 77u);
-    write_file(kept()[0], "what");
-    EXPECT_EQ(exported({card()}, leaf(disk(16)), options, problems).cut_triangles,
-              first.cut_triangles);
-}
-
-TEST(MeshCutting, CutOutMasksTookAnyMemory) {
-    std::vector<Mesh> meshes(4);
-    for (int i = 0; i < 4; ++i) {
-        for (int k = 0; k < 30 + i; ++k)
-            append(meshes[static_cast<size_t>(i)], card(), {glm::dmat3(1.0), {0, 0, 0.01 * k}});
-    }
-    Problems problems;
-    ExportOptions options = fresh_folder("all");
-    const ExportReport all = exported(meshes, leaf(disk()), options, problems);
-    EXPECT_GT(all.cut_triangles, 4000u);
-    options.budget = 500'000;
-    options.folder = fresh_folder("budget").folder;
-    const ExportReport some = exported(meshes, leaf(disk()), options, problems);
-    EXPECT_LT(some.cut_triangles * 245, options.budget * 9 / 8);
-    EXPECT_GT(some.cut_triangles, 500u);
-    EXPECT_LT(some.bytes, all.bytes);
-    EXPECT_EQ(some.representations, all.representations);
-}
-
-TEST(MeshCutting, BumpsOfOneFileForSeveralUsesWereNamedTwice) {
-    Mesh ball = shapes::sphere(1, 3);
-    for (const glm::vec3& at : ball.positions)
-        ball.uvs.emplace_back(at.x, at.y * at.z);
-    Material material = leaf(disk());
-    material.bump_texture = scenes::checker();
-    material.bump_distance = 0.1;
-    Problems problems;
-    exported({ball}, material, fresh_folder("bumps"), problems);
-    ASSERT_EQ(problems.size(), 1u);
-    EXPECT_EQ(problems[0].code, "bump_not_flat");
 }
 
 TEST(PovrayRenderMasks, CutOutCardsLookAsTheirTextures) {
