@@ -243,9 +243,11 @@ private:
     /// out of them.
     MaskOutlinePtr outline_that_fits(const ShownMask& mask, const image::MaskTexels& texels,
                                      bool crowd) const {
-        // The factor on the tolerance, and the part of the picture's side, up to which it is coarser.
-        // Taste: leaves in a crowd keep their area; larger ones show corners of single leaves.
+        // The factor on the tolerance up to which it is coarser.
+        // Taste: leaves in a crowd keep their area; a larger value shows corners of single leaves.
         constexpr double kCoarser = 16;
+        // The same as a part of the picture's side.
+        // Taste: branches of a picture across are told apart; a larger value makes them blobs.
         constexpr double kOfSide = 1.0 / 16;
         const double finest = std::max(1.0, mask.tolerance);
         const double most =

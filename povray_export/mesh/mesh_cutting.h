@@ -29,7 +29,7 @@ struct CutMesh {
 CutMesh cut_masks(const Model& model, const Representation& representation,
                   const RepresentationOptions& options, MaskOutlines& outlines, const Job& job);
 
-/// What can be told of cut_masks() before cutting.
+/// The size of the result of cut_masks(), as far as it can be told before cutting.
 struct CutForecast {
     bool by_outline = false;  // `outline` of the options matters: some mask is cut by it
     uint64_t triangles = 0;   // about what all masks become, or are trimmed to

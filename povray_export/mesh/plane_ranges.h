@@ -20,7 +20,7 @@ struct PlaneRange {
     double high = -kInfinity;
 };
 
-/// What of a triangle lies between two heights, along the other axis.
+/// The extent along the other axis of the part of a triangle that lies between two heights.
 PlaneRange range_between(const glm::dvec2 (&at)[3], double bottom, double top);
 
 /// The part of a line's length, from `from` to `to`, that is inside a triangle.

@@ -234,7 +234,6 @@ void TriangleCutter::each_piece_of(const PictureTile& tile, const glm::dvec2 (&a
         return static_cast<int>(std::clamp(std::floor(place * side_), 0.0, side_ - 1.0));
     };
     for (int y = index(box.low.y - kThin); y <= index(box.high.y + kThin); ++y) {
-        // What lies beyond the picture's border belongs to other rows.
         const PlaneRange range = range_between(here, static_cast<double>(y) / side_ - kThin,
                                                static_cast<double>(y + 1) / side_ + kThin);
         if (!(range.low <= range.high))

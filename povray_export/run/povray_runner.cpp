@@ -238,7 +238,8 @@ std::vector<std::string> arguments_of(const RunOptions& options, const std::stri
     return out;
 }
 
-/// What may have ended POV-Ray by a signal: the object that the scene names for its clear surfaces.
+/// The likely reason why a signal ended POV-Ray: the object that the scene names for its clear
+/// surfaces.
 std::string likely_reason(const std::filesystem::path& folder, int signal) {
     if (signal == SIGKILL)
         return "; the system does that when memory is short";

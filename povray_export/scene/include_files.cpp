@@ -123,7 +123,7 @@ void IncludeFiles::merge() {
     }
 }
 
-/// What is to be cut of a file, which takes long to find: it is kept.
+/// The forecast of how a file is cut, which takes long to find: it is kept.
 CutForecast IncludeFiles::forecast(Hash name, const IncludeFile& include, const Job& job) {
     const std::filesystem::path path = folder_ / "r" / (hex16(name) + ".cut");
     CutForecast out;
