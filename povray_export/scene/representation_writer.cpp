@@ -142,7 +142,9 @@ private:
                          pictures_.file_comments() + left_out + pictures_.declarations());
     }
 
-    std::string declare() const { return "#declare " + identifier_ + " = "; }
+    std::string declare() const {
+        return pictures_.declarations() + "#declare " + identifier_ + " = ";
+    }
 
     const Model& model_;
     const Representation& representation_;

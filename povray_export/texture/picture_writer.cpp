@@ -308,6 +308,12 @@ std::string PictureWriter::pigment(const Texture& texture, PigmentContent conten
     return out + mapping(texture);
 }
 
+std::string PictureWriter::declared_pigment(const std::string& pigment) {
+    const std::string identifier = "LDS_G_" + hex16(Hasher().text(pigment).result());
+    declared_[identifier] = pigment;  // before all layers, which begin with LDS_T_
+    return "pigment{" + identifier + '}';
+}
+
 std::string PictureWriter::layered(const std::string& layers) {
     const std::string identifier = "LDS_T_" + hex16(Hasher().text(layers).result());
     declared_[identifier] = layers;  // behind all images, which begin with LDS_I_

@@ -67,6 +67,8 @@ public:
     /// Throws Error(Internal) for a picture that is not resident.
     std::string file_reference(const Texture& texture, PigmentContent content, int halvings = 0);
 
+    /// The text pigment{...} of a pigment, which is declared: many textures share it.
+    std::string declared_pigment(const std::string& pigment);
     /// The text texture{...} of layers, which are declared: a list of textures takes no others.
     std::string layered(const std::string& layers);
 

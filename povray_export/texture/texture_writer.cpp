@@ -2,6 +2,7 @@
 #include "povray_export/texture/texture_writer.h"
 
 #include "povray_export/scene/povray_number.h"
+#include "povray_export/texture/grazing_gloss.h"
 #include "povray_export/texture/height_map.h"
 #include "povray_export/texture/surface_finish.h"
 
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace lodestone::povray {
 namespace {
@@ -67,12 +69,16 @@ public:
             share(material.transmission, 0) > 0 || shown(material.roughness_texture) ||
             shown(material.metallic_texture))
             return "texture{" + mixed(material) + '}';
-        const SolidSurface surface = surface_of(material, look_of(material));
+        const SolidSurface surface = surface_of(material, look_of(material), true);
         const bool mirror = surface.finish.mirror > 0 || surface.finish.mirror_grazing > 0;
         if (surface.lamp || !surface.plain || mirror)
             return "texture{" + solid(material, surface) + '}';
         std::string layers = "texture{" + surface.pigment;
         append_finish(layers, surface.finish, 1 / (1 - kVeil), glm::dvec3(0.0));
+        if (surface.gloss) {
+            layers += "} texture{" + grazing(surface, 1 - kVeil, 1 / kVeil, 1);
+            return pictures_.layered(layers + '}');
+        }
         Finish veil;
         veil.ambient = surface.white;
         append_number(layers += "} texture{pigment{rgbt <1,1,1,", 1 - kVeil, 6);
@@ -97,13 +103,25 @@ private:
     struct SolidSurface {
         Body pigment;  // and the bumps
         Finish finish;
-        bool lamp = false;      // it glows in a picture
-        bool plain = false;     // what follows has not the color of the pigment
-        glm::dvec3 white{0.0};  // the answer to a uniform sky
+        bool lamp = false;   // it glows in a picture
+        bool plain = false;  // what follows has not the color of the pigment
+        /// The white gloss, if it follows the angle of view: then it is not in the finish.
+        std::optional<GrazingGloss> gloss;
+        glm::dvec3 white{0.0};  // the answer to a uniform sky, if there is no such gloss
         glm::dvec3 even{0.0};   // emission
     };
 
     bool shown(const Texture& texture) const { return texture && surface_.uvs; }
+
+    /// The text of gloss that follows the angle of view: its answer to the sky is `light` times
+    /// what it is, and its highlights are `lamps` times.
+    Body grazing(const SolidSurface& surface, double transmit, double light, double lamps) {
+        std::string white;
+        append_grazing_pigment(white, *surface.gloss, transmit);
+        Body out = pictures_.declared_pigment(white) + ' ';
+        append_grazing_finish(out, *surface.gloss, share(surface_.sky, 1), light, lamps);
+        return out;
+    }
 
     /// `whole`: the picture is not made smaller.
     std::string pigment(const Texture& texture, PigmentContent content, bool whole = false) {
@@ -272,7 +290,9 @@ private:
         return out;
     }
 
-    SolidSurface surface_of(const Material& material, const SurfaceLook& look) {
+    /// `layered`: what has not the color of the pigment may be a layer over it.
+    SolidSurface surface_of(const Material& material, const SurfaceLook& look,
+                            bool layered = false) {
         glm::dvec3 base;
         glm::dvec3 emission;
         glm::dvec3 paint(1.0);
@@ -292,15 +312,22 @@ private:
         const double scale = image ? even_scale(material.base_color_texture) : 1;
         const double painted = image ? std::max({paint.x, paint.y, paint.z}) : 1;
         const double brightness = scale * painted;
-        out.finish = finish_of(look);
+        if ((image || layered) && !out.lamp && emission == glm::dvec3(0.0))
+            out.gloss = grazing_gloss(look);
+        SurfaceLook below = look;
+        if (out.gloss)
+            below.specular = 0;
+        out.finish = finish_of(below);
         const double sky = share(surface_.sky, 1);
         out.finish.ambient *= brightness * sky;
         out.finish.diffuse *= brightness;
         out.finish.specular *= std::lerp(1.0, brightness, out.finish.metallic);
         // The part that has not the color of the pigment, and is the same all over.
-        out.white = glm::dvec3(white_sky(look) * sky);
+        if (!out.gloss)
+            out.white = glm::dvec3(white_sky(look) * sky);
         out.even = out.lamp ? glm::dvec3(0.0) : emission;
-        out.plain = image && (out.white != glm::dvec3(0.0) || out.even != glm::dvec3(0.0));
+        out.plain =
+            out.gloss || (image && (out.white != glm::dvec3(0.0) || out.even != glm::dvec3(0.0)));
         out.pigment = "pigment{";
         if (image) {
             Texture texture = material.base_color_texture;
@@ -334,7 +361,9 @@ private:
         Entries entries{{1, std::move(body)}};
         if (surface.lamp)
             entries.emplace_back(1, glow(material.emission_texture, parts));
-        if (surface.plain) {
+        if (surface.gloss) {
+            entries.emplace_back(1, grazing(surface, 0, parts, parts));
+        } else if (surface.plain) {
             Finish rest;
             rest.ambient = surface.white;
             Body text = "pigment{rgb 1} ";

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Grazing gloss: how a rough surface reflects the more the flatter it is looked at (Fresnel), by a
+// pigment that follows the angle of view. No ray is traced for it.
+#pragma once
+
+#include "povray_export/texture/surface_finish.h"
+
+#include <array>
+#include <optional>
+
+namespace lodestone::povray {
+
+/// The white reflection of a rough surface that is not metal.
+struct GrazingGloss {
+    /// The angles of view, in degrees from the normal, between which the reflection is linear.
+    /// Taste: more knots follow the curve closer, in longer texts.
+    static constexpr std::array<double, 7> kAngles{0, 40, 50, 60, 70, 80, 90};
+
+    double sky = 0;                           // of a uniform sky of 1, when facing the eye
+    std::array<double, kAngles.size()> grow;  // at each angle, over that; also the pigment
+    double highlight = 0;                     // albedo of the highlight of lamps, when facing
+    double roughness = 1;                     // that of the highlight: 1 / exponent
+    double lamp_growth = 1;  // POV-Ray's metallic: how the highlight follows the pigment
+};
+
+/// The gloss of a look, found by fitting: tests/bench/peers/fit_grazing.py. None where there is
+/// none, and of what is so smooth that it mirrors its surroundings.
+std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look);
+
+/// Appends pigment{...}: white that grows with the angle of view, clear by `transmit`.
+void append_grazing_pigment(std::string& out, const GrazingGloss& gloss, double transmit);
+
+/// Appends the finish for that pigment. `sky`: the share of a uniform sky's light that arrives;
+/// `light` and `lamps` scale what is reflected of the sky and of lamps.
+void append_grazing_finish(std::string& out, const GrazingGloss& gloss, double sky, double light,
+                           double lamps);
+
+}  // namespace lodestone::povray
