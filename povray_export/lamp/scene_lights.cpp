@@ -9,10 +9,16 @@
 
 namespace lodestone::povray {
 
-void SceneLights::append(std::string& out, Light light) const {
+void SceneLights::append(std::string& out, Light light, int rays) const {
     // The factor on an area's edges, which still say where it shines.
     // Taste: any size that no pixel can tell will do.
     constexpr double kPoint = 1e-7;
+    LightSampling sampling = sampling_;
+    if (rays > 0) {
+        sampling.grid = light::LampGrid{rays, false};
+        append_light(out, magnified(light, times_), bound_, sampling, problems_);
+        return;
+    }
     const double widest = light::widest_penumbra(light, view_, occluders_);
     const double step = std::max(light::kLeastPenumbra, shading_.shadow_error);
     if (widest <= step) {
@@ -20,7 +26,6 @@ void SceneLights::append(std::string& out, Light light) const {
         light.edge_u *= kPoint;
         light.edge_v *= kPoint;
     }
-    LightSampling sampling = sampling_;
     if (shading_.shadow_error > 0)  // else every light is as it is
         sampling.steps = widest / step;
     append_light(out, magnified(light, times_), bound_, sampling, problems_);

@@ -27,8 +27,8 @@ public:
           problems_(problems) {}
 
     /// Appends a light: without its size where no pixel can tell, or with the rays its penumbra
-    /// needs.
-    void append(std::string& out, Light light) const;
+    /// needs. `rays`: along an edge of its grid, where that is known; else 0.
+    void append(std::string& out, Light light, int rays) const;
 
     /// Declares the lights of a plan, once for each grid that a group samples them with; returns
     /// their names, empty for a light without power.

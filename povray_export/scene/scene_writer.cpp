@@ -340,7 +340,7 @@ private:
         demands.measured_suns = options_.antialiasing != Antialiasing::Reference;
         light::LightPlan plan = light::plan_lights(model_, renderer_surfaces(model_), drawn, view_,
                                                    demands, problems_, job_);
-        if (plan.lamps)
+        if (!plan.empty())
             report_.lights_each = plan.lights_each;
         name_slow_lamps(plan);
         return plan;
@@ -449,22 +449,19 @@ private:
         append_camera(out, camera, options_.antialiasing, problems_);
         if (lit()) {
             for (uint32_t i = 0; i < model_.lights.size(); ++i) {
-                const Light& light = model_.lights[i];
-                const bool planned =
-                    light::is_lamp(light)
-                        ? plan.lamps
-                        : std::find(plan.suns.begin(), plan.suns.end(), i) != plan.suns.end();
-                if (!planned)
-                    scene_lights.append(out, light);
+                if (!plan.empty() && light::is_lamp(model_.lights[i]))
+                    continue;
+                const auto sun = std::find_if(plan.suns.begin(), plan.suns.end(),
+                                              [&](const auto& one) { return one.light == i; });
+                scene_lights.append(out, model_.lights[i], sun == plan.suns.end() ? 0 : sun->rays);
             }
-            if (plan.lamps) {
+            if (!plan.empty()) {
                 out += "// Of ";
                 append_count(out, report_.lamps);
                 out += " lamps a point is lit by ";
                 append_number(out, plan.lights_each, 3);
-                out += " lights on average, some of which stand for several\n";
+                out += " lights on average, some of which stand for several\n" + lights;
             }
-            out += lights;
             if (!sky_.lights.empty())
                 out += "// The rest of the environment's light\n";
             for (const Light& light : sky_.lights)

@@ -329,7 +329,7 @@ TEST_F(LightPlanTest, ASunIsWrittenOnceAndAsFinelyAsItsShadowsNeed) {
     };
     const std::string sharp = text();
     EXPECT_EQ(count_of(sharp, "parallel point_at"), 1u);
-    EXPECT_EQ(count_of(sharp, "light_source"), 2u);  // declared, and used
+    EXPECT_EQ(count_of(sharp, "light_source"), 1u);
     EXPECT_EQ(count_of(sharp, "light_group"), 0u);
     EXPECT_EQ(count_of(sharp, "area_light"), 0u);
     // Nobody looked: as wide as a shadow could be.

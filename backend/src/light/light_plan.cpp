@@ -176,7 +176,6 @@ LightPlan plan_of(const RegionLights& regions, std::span<const LitPoint> points,
             plan = std::move(groups);
     }
     number_lights(regions.tree, plan);
-    plan.lamps = true;
     return plan;
 }
 
@@ -217,7 +216,6 @@ LightPlan strongest_plan(std::span<const Light> lights, size_t things, const Vie
         plan.shadow_rays += shadow_rays(lights[index], plan.groups[0].back().grid);
     }
     plan.lights_each = static_cast<double>(kMostUnchosen);
-    plan.lamps = true;
     for (uint32_t i = 0; i < things; ++i)
         plan.pieces.push_back({i, 0, {}});
     return plan;
@@ -321,19 +319,14 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     LitGrid grid = scene.points(view, static_cast<size_t>(count / (1 + bounces)), bounces, job);
     if (grid.points.empty())
         return {};
-    std::vector<Light> soft;
+    std::vector<PlannedSun> planned;
     for (const uint32_t sun : suns)
-        soft.push_back(model.lights[sun]);
-    const std::vector<std::vector<int>> sun_rays =
-        fit_sun_rays(scene, grid.points, soft, drawn.size(), view, demands.grids, job);
-    std::vector<uint32_t> things;
-    for (const LitPoint& point : grid.points)
-        things.push_back(point.region);
+        planned.push_back(
+            {sun, fit_sun_rays(scene, grid.points, model.lights[sun], view, demands.grids, job)});
     LightPlan plan;
     if (plans_lamps)
         plan = plan_lamps(scene, grid, model.lights, drawn, bounds, view, demands, job);
-    if (!suns.empty())
-        add_suns(plan, model.lights, suns, sun_rays, things);
+    plan.suns = std::move(planned);
     return plan;
 }
 

@@ -50,6 +50,14 @@ struct GroupLight {
     auto operator<=>(const GroupLight&) const = default;
 };
 
+/// A sun, and how finely it is sampled.
+struct PlannedSun {
+    uint32_t light = 0;  // index of the model's lights
+    int rays = 1;        // along an edge of its grid; 1: its shadows are sharp
+
+    bool operator==(const PlannedSun&) const = default;
+};
+
 struct LightPlan {
     std::vector<Light> lights;  // lamps, and lights that stand for several
     /// The first group lights what no point lies on: by all lamps that matter anywhere. A single
@@ -59,11 +67,11 @@ struct LightPlan {
     std::vector<LitPiece> pieces;
     double lights_each = 0;  // the mean number of lights of a point that the view shows
     double shadow_rays = 0;  // the mean number of shadow rays to them
-    /// The suns among `lights`, by their numbers in the model; other suns light everything, and so
-    /// do all lamps where `lamps` is false.
-    std::vector<uint32_t> suns;
-    bool lamps = false;
+    /// The suns that are sampled otherwise than by the widest penumbra that could be. They light
+    /// everything.
+    std::vector<PlannedSun> suns;
 
+    /// Whether nothing is known of lamps: all of them light everything.
     bool empty() const { return groups.empty(); }
 };
 
@@ -74,7 +82,7 @@ struct LightDemands {
     glm::dvec3 sky{0.0};      // radiance of the sky's uniform light
     bool sky_shaded = false;  // true: as far as surfaces see the sky; else all of it everywhere
     std::span<const Light> suns{};  // what else lights the points; lamps among them do not count
-    /// True: the model's suns are sampled as finely as their penumbrae on each thing need it.
+    /// True: the model's suns are sampled as finely as the penumbrae need that the view shows.
     bool measured_suns = false;
 };
 
@@ -95,12 +103,12 @@ inline constexpr double kFewShadowRays = 8;
 /// that send light to what the view shows are used, too. A lamp that matters to no point is in no
 /// group.
 /// Fewer than 8 lamps are not grouped: those that matter anywhere light everything.
-/// Suns are in every group, with as many rays as the penumbrae need that the view shows there.
+/// Suns have as many rays as the penumbrae need that the view shows.
 ///
 /// Where rays cannot be cast, or there is too much to cast them at, the 64 lamps that are strongest
 /// at the camera light everything, and others nothing (a problem).
 ///
-/// Empty if lamps cost few rays, or they are few and cannot be chosen, and no sun is soft.
+/// Empty if lamps cost few rays, or they are few and cannot be chosen, ; it may have suns.
 LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
                       std::span<const DrawnThing> drawn, const View& view,
                       const LightDemands& demands, Problems& problems, const Job& job = {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards by how many rays suns are sampled: as many as the penumbrae of a view need, thing by thing.
+// Guards by how many rays suns are sampled: as many as the penumbrae of a view need.
 #include "base/parallel.h"
 #include "light/sun_plan.h"
 #include "scenes/small_models.h"
@@ -67,13 +67,11 @@ protected:
         EXPECT_TRUE(problems.empty());
         return out;
     }
-    /// The rays along an edge of the only sun, for a thing.
-    static int rays(const LightPlan& plan, uint32_t thing) {
-        for (const LitPiece& piece : plan.pieces) {
-            if (piece.drawn == thing)
-                return plan.groups.at(piece.group).at(0).grid.rays;
-        }
-        return 0;
+    /// The rays along an edge of the only sun; 0: it is not planned.
+    int rays(const LightDemands& wanted = demands()) const {
+        const LightPlan found = plan(wanted);
+        EXPECT_TRUE(found.empty());
+        return found.suns.size() == 1 ? found.suns[0].rays : 0;
     }
 
     Model model_;
@@ -83,19 +81,19 @@ protected:
 }  // namespace
 
 TEST_F(SunPlanTest, WhereNothingIsNoSunIsPlanned) {
-    EXPECT_TRUE(plan().empty());
+    EXPECT_EQ(rays(), 0);
     add({0, 0, 0}, 20, 20);
-    EXPECT_TRUE(plan().empty());  // flat ground: no penumbra can be
+    EXPECT_EQ(rays(), 0);  // flat ground: no penumbra can be
     add({0, 0, 30}, 20, 1);
-    EXPECT_EQ(plan().suns, std::vector<uint32_t>{0});
+    EXPECT_EQ(rays(), 3);
     LightDemands sharp = demands();
     sharp.grids.rays = 1;
-    EXPECT_TRUE(plan(sharp).empty());
+    EXPECT_EQ(rays(sharp), 0);
     sharp = demands();
     sharp.measured_suns = false;
-    EXPECT_TRUE(plan(sharp).empty());
+    EXPECT_EQ(rays(sharp), 0);
     model_.lights[0].angle = 0;
-    EXPECT_TRUE(plan().empty());
+    EXPECT_EQ(rays(), 0);
 }
 
 TEST_F(SunPlanTest, APenumbraHasARayForTwoPixels) {
@@ -105,11 +103,11 @@ TEST_F(SunPlanTest, APenumbraHasARayForTwoPixels) {
         things_.clear();
         add({0, 0, 0}, 20, 20);
         add({0, 0, height}, 20, 1);
-        EXPECT_EQ(rays(plan(), 0), expected) << height;
+        EXPECT_EQ(rays(), expected) << height;
         // Half of the Shadows px need as many or more.
         LightDemands fine = demands();
         fine.grids.shadow_error = 0.5;
-        EXPECT_EQ(rays(plan(fine), 0), expected == 2 && height < 10 ? 2 : 2 * expected - 1);
+        EXPECT_EQ(rays(fine), expected == 2 && height < 10 ? 2 : 2 * expected - 1);
     }
 }
 
@@ -119,7 +117,7 @@ TEST_F(SunPlanTest, LeavesNearTheGroundHaveSharpShadowsBelowATower) {
     for (int i = 0; i < 12; ++i)
         add({i - 6.0, 0.3 * i - 2, 0.5}, 0.4, 0.4);
     add({100, 100, 80}, 1, 1);  // makes the widest penumbra that could be wide
-    EXPECT_EQ(rays(plan(), 0), 1);
+    EXPECT_EQ(rays(), 1);
 }
 
 TEST_F(SunPlanTest, WhatHidesLessThanHalfOfTheSunHasNoPenumbra) {
@@ -128,25 +126,17 @@ TEST_F(SunPlanTest, WhatHidesLessThanHalfOfTheSunHasNoPenumbra) {
     film.alpha = 0.3;
     add({0, 0, 0}, 20, 20);
     add({0, 0, 40}, 20, 1, film);
-    EXPECT_EQ(rays(plan(), 0), 1);
+    EXPECT_EQ(rays(), 1);
     model_.materials.back().alpha = 0.7;
-    EXPECT_EQ(rays(plan(), 0), 5);
+    EXPECT_EQ(rays(), 5);
 }
 
-TEST_F(SunPlanTest, AFewThingsWithWidePenumbraeHaveAGroupOfTheirOwn) {
+TEST_F(SunPlanTest, WideShadowsOnHardlyAnythingChangeNothing) {
     add({0, 0, 0}, 20, 20);
-    add({5, 0, 1}, 2, 7.2);     // a table
-    add({5, 3.5, 41}, 2, 0.4);  // shades the table alone: the floor sees nothing of the shadow
-    LightPlan found = plan();
-    ASSERT_EQ(found.groups.size(), 2u);
-    EXPECT_EQ(rays(found, 0), 1);
-    EXPECT_EQ(rays(found, 1), 5);
-    // One that is most of the picture has all things beside it: groups cost more than rays.
-    add({0, 0, 2}, 11, 7.2);
-    add({0, 0, 60}, 0.5, 7.2);
-    found = plan();
-    EXPECT_EQ(found.groups.size(), 1u);
-    EXPECT_EQ(rays(found, 0), rays(found, 3));
+    add({5, 0, 41}, 0.1, 0.1);
+    EXPECT_EQ(rays(), 1);
+    add({0, 0, 41}, 0.5, 7.2);
+    EXPECT_EQ(rays(), 5);
 }
 
 TEST_F(SunPlanTest, ThreadsChangeNothing) {
@@ -156,7 +146,7 @@ TEST_F(SunPlanTest, ThreadsChangeNothing) {
     const LightPlan many = plan();
     const ThreadLimit one(1);
     const LightPlan single = plan();
-    EXPECT_EQ(many.groups, single.groups);
+    EXPECT_EQ(many.suns, single.suns);
 }
 
 TEST_F(SunPlanTest, SunsThatAreNoNumbersStayAsTheyAre) {
@@ -167,5 +157,6 @@ TEST_F(SunPlanTest, SunsThatAreNoNumbersStayAsTheyAre) {
     model_.lights[0].angle = nan;
     model_.lights[1].direction = glm::dvec3(0.0);
     model_.lights[2].power = -1;
-    EXPECT_EQ(plan().suns, std::vector<uint32_t>{3});
+    ASSERT_EQ(plan().suns.size(), 1u);
+    EXPECT_EQ(plan().suns[0].light, 3u);
 }
