@@ -19,8 +19,8 @@ int finest_sun_rays(const Light& sun, int rays);
 std::vector<uint32_t> soft_suns(std::span<const Light> lights, const View& view,
                                 const GridDemands& demands, std::span<const Bound> bounds);
 
-/// The fewest rays along an edge with which light is hardly anywhere in the view farther off than
-/// the narrowest penumbra that shows. A point lies in a penumbra where something hides a part of
+/// The fewest rays along an edge with which the view hardly anywhere shows a step, or one where all
+/// penumbrae are too narrow to show. A point lies in a penumbra where something hides a part of
 /// the sun from it; it is as wide as the sun looks from there, farthest away. Any number of threads
 /// gives the same result. cost: 6 rays a point
 int fit_sun_rays(const LitScene& scene, std::span<const LitPoint> points, const Light& sun,
