@@ -193,8 +193,8 @@ void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangl
 bool SkySampler::meets_near_back(const SkyRay& ray, double reach) const {
     const SkyScene::SkyBlock block =
         request_.around != nullptr
-            ? request_.around->first_block(ray.from_world, ray.direction)
-            : first_block(request_.surface, ray.from, to_own_.linear * ray.direction);
+            ? request_.around->first_block(ray.from_world, ray.direction, reach)
+            : first_block(request_.surface, ray.from, to_own_.linear * ray.direction, reach);
     return block.back && block.t <= reach;
 }
 

@@ -159,15 +159,16 @@ SkyScene::SkyScene(const Model& model, const SkySurfaces& surfaces,
         clear_.scene.emplace(clear_.mesh, surfaces.skin_of_model());
 }
 
-SkyScene::SkyBlock SkyScene::first_block(const glm::dvec3& from,
-                                         const glm::dvec3& direction) const {
+SkyScene::SkyBlock SkyScene::first_block(const glm::dvec3& from, const glm::dvec3& direction,
+                                         double far) const {
     SkyBlock out;
     if (opaque_.scene) {
-        const ray::RayHit hit = opaque_.scene->first_hit(from - origin_, direction);
+        const ray::RayHit hit = opaque_.scene->first_hit(from - origin_, direction, far);
         if (hit.hit)
             out = {hit.t, meets_back(opaque_.mesh, hit.triangle, direction)};
     }
-    const ray::PlacedScenes::PlacedHit hit = placed_.first_hit(from, direction, out.t);
+    const ray::PlacedScenes::PlacedHit hit =
+        placed_.first_hit(from, direction, std::min(far, out.t));
     if (!hit.hit)
         return out;
     // A mirrored placement keeps what is outside outside.
@@ -178,8 +179,8 @@ SkyScene::SkyBlock SkyScene::first_block(const glm::dvec3& from,
 }
 
 SkyScene::SkyBlock first_block(const SkySurface& surface, const glm::dvec3& from,
-                               const glm::dvec3& direction) {
-    const ray::RayHit hit = surface.scene->first_hit(from, direction);
+                               const glm::dvec3& direction, double far) {
+    const ray::RayHit hit = surface.scene->first_hit(from, direction, far);
     if (!hit.hit)
         return {};
     return {hit.t, surface.opaque_slot(surface.mesh->slot(hit.triangle)) &&

@@ -79,12 +79,14 @@ public:
         return opaque_.hides(near, direction) || clear_.hides(near, direction) ||
                placed_.occluded(from, direction, kInfinity, blocker);
     }
-    /// The first opaque thing in a direction: how far it is, and whether its back is met.
+    /// The first opaque thing in a direction, up to `far`: how far it is, and whether its back is
+    /// met.
     struct SkyBlock {
         double t = kInfinity;
         bool back = false;
     };
-    SkyBlock first_block(const glm::dvec3& from, const glm::dvec3& direction) const;
+    SkyBlock first_block(const glm::dvec3& from, const glm::dvec3& direction,
+                         double far = kInfinity) const;
     /// The origin of coordinates of single precision: rays must begin above surfaces by their
     /// rounding. It lies amid most things, so that a huge one does not make it coarser for others.
     const glm::dvec3& origin() const { return origin_; }
@@ -109,6 +111,6 @@ private:
 
 /// The first opaque thing of a surface in a direction, in its frame.
 SkyScene::SkyBlock first_block(const SkySurface& surface, const glm::dvec3& from,
-                               const glm::dvec3& direction);
+                               const glm::dvec3& direction, double far = kInfinity);
 
 }  // namespace lodestone::light

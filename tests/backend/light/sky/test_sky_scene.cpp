@@ -33,6 +33,10 @@ protected:
         for (const uint64_t joined : {SkyScene::kMostJoined, uint64_t{0}}) {
             const SkyScene scene(builder.model, surfaces, occluders, {}, joined);
             out.push_back(scene.first_block(from, direction));
+            if (out.back().t < kInfinity) {
+                EXPECT_EQ(scene.first_block(from, direction, out.back().t - 0.01).t, kInfinity);
+                EXPECT_EQ(scene.first_block(from, direction, out.back().t + 0.01).t, out.back().t);
+            }
             uint32_t blocker = ray::PlacedScenes::kNothing;
             EXPECT_EQ(scene.hides(from, direction, blocker), out.back().t < kInfinity);
         }
