@@ -246,8 +246,10 @@ TEST_F(SkyOcclusionScenes, ManyCopiesHaveAtMostFourGrades) {
     Mesh mesh = shapes::sphere(1, 4);
     const ObjectIndex ball = builder.mesh(mesh);
     const ObjectIndex roof = builder.mesh(shapes::box({-20, -20, 2}, {20, 20, 3}));
-    for (int i = 0; i < 100; ++i)
-        builder.place(ball, at(i % 10 * 8, i / 10 * 8, 0));
+    for (int x = 0; x < 80; x += 8) {
+        for (int y = 0; y < 80; y += 8)
+            builder.place(ball, at(x, y, 0));
+    }
     builder.place(roof);
     const ExportReport report = write("scene", builder.finish());
     EXPECT_GE(report.sky_copies, 1u);
@@ -341,7 +343,7 @@ TEST_F(SkyOcclusionScenes, TheLightOnCopiesDoesNotDependOnWhatIsKept) {
     const int copies = 4500;
     for (const ObjectIndex thing : things) {
         for (int i = 0; i < copies; ++i)
-            builder.place(thing, at(i % 67, i / 67 * 0.7, 0.001 * i));
+            builder.place(thing, at(i % 67, i % 69, 0.001 * i));
     }
     write("scene", builder.finish());
     const std::filesystem::path file = own_scratch() / "scene" / "sky_light.bin";
