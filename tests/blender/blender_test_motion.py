@@ -187,6 +187,7 @@ class Built(unittest.TestCase):
         scenes.instance("Ride 1", hidden, (0, 20, 0))
         _, counts = self.build(1)
         self.assertEqual(counts["Ride"], 1)
+        self.assertEqual(counts["Ride in motion"], 1)  # the post beside it rests
         built, again = self.build(10)
         self.assertEqual((built, again), (0, counts))
 

@@ -198,9 +198,10 @@ class Groups:
     ) -> tuple[Placements, bool]:
         """The things of a context in a branch, and whether they change in an animation. Those that
         do in the scene itself go aside: a group of things that rest keeps its levels in every
-        frame. An instanced collection is drawn as it is while it changes."""
-        placements = Placements()
-        anew, in_scene = False, context.collection is None
+        frame. An instanced collection that changes is drawn as it is, and what moves in it is a
+        group in it."""
+        placements, moving = Placements(), Placements()
+        in_scene = context.collection is None
         self._above.append(branch)
         for child in branch.children:
             group = self._group(child, *self._members(context, child, rest, aside))
@@ -225,11 +226,14 @@ class Groups:
                             datablock_ids.key_of("collection", above.collection), made.objects
                         )
             else:
-                placements.extend(made)
-                anew = anew or changes
+                (moving if changes else placements).extend(made)
         self._add_plain(placements, context.plain, rows[done:])
         self._above.pop()
-        return placements, anew
+        if moving:
+            uid = stable_ids.stable_id(self._branch_uid(branch), "changing")
+            name = f"{branch.name} {_ASIDE_NAMES['changing']}"
+            placements.add(self._intern(uid, name, False, moving, True), IDENTITY, name)
+        return placements, bool(moving)
 
     def _add_plain(self, placements: Placements, plain: Plain, rows: list[int]) -> None:
         if not rows:
@@ -294,16 +298,18 @@ class Groups:
         known.append((entry.emitted, group))
         return group
 
+    def _branch_uid(self, branch: Branch) -> str:
+        if branch.collection is None:
+            return datablock_ids.scene_uid(branch.name)
+        return datablock_ids.uid_of("collection", branch.collection)
+
     def _group(self, branch: Branch, placements: Placements, changes: bool = False) -> Any | None:
         if not placements:
             return None
-        if branch.collection is None:
-            uid = datablock_ids.scene_uid(branch.name)
-        else:
-            uid = datablock_ids.uid_of("collection", branch.collection)
+        uid = self._branch_uid(branch)
         ordinary = branch.collection is not None and self._roles.is_ordinary(branch.collection)
         role = datablock_ids.role(branch.environment, ordinary)
-        group = self._intern(uid, branch.name, role, placements, changes)
+        group = self._intern(uid, branch.name, role, placements)
         if not changes:
             self.collections[group] = None
         if branch.collection is not None:
