@@ -2,7 +2,9 @@
 #include "povray_export/mesh/mesh_cutting.h"
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "povray_export/mesh/clear_layers.h"
+#include "povray_export/mesh/doubled_triangles.h"
 #include "povray_export/mesh/triangle_cutter.h"
 #include "povray_export/mesh/uv_extent.h"
 
@@ -15,8 +17,8 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <tuple>
-#include <unordered_map>
+#include <span>
+#include <utility>
 
 namespace lodestone::povray {
 namespace {
@@ -26,6 +28,9 @@ namespace {
 /// microseconds, each time, for every sample of a light.
 /// Taste: a larger value cuts finer nets, for memory and parsing.
 constexpr size_t kMostEach = 32;
+/// The same in a crowd, whose outlines are coarser than asked for.
+/// Taste: a larger value cuts branches more finely, for memory and parsing.
+constexpr size_t kMostInCrowd = 64;
 /// The same where only what is clear is cut off, which saves most of the holes.
 /// Taste: a larger value leaves fewer of them.
 constexpr size_t kMostTrimmed = 24;
@@ -42,10 +47,13 @@ struct CutSlot {
     const Material* material = nullptr;
     std::vector<uint32_t> triangles;
     std::vector<uint32_t> doubles;  // the other sides of some of them, which are left out
+    image::SeenTexels seen;         // by all of them
     double tolerance = 1;           // in texels
-    size_t most = 0;                // triangles that it may become
-    size_t expected = 0;            // triangles that it becomes, about
-    size_t hull_corners = 0;        // corners of what it may be trimmed by
+    std::optional<double> cutoff;
+    bool crowd = false;       // of leaves, none of which matters
+    size_t most = 0;          // triangles that it may become
+    size_t expected = 0;      // triangles that it becomes, about
+    size_t hull_corners = 0;  // corners of what it may be trimmed by
     MaskOutlinePtr outline;
     bool full = false;     // nothing of it is clear: it is opaque without any cut
     bool opaque = false;   // what is left has no alpha
@@ -65,13 +73,21 @@ public:
 
     CutForecast forecast() {
         CutForecast out;
+        Hasher outlines;
         find_slots();
+        begin();
         for (auto& [number, slot] : slots_) {
             if (!find_outline(slot))
                 continue;
+            if (slot.crowd && slot.opaque && slot.outline)
+                try_crowd(slot);
             out.by_outline = out.by_outline || (slot.opaque && slot.outline);
             out.triangles += slot.expected;
+            outlines.value(number).value(slot.opaque);
+            if (slot.outline)
+                outlines.array(std::span<const glm::dvec2>(slot.outline->inside.points));
         }
+        out.outlines = outlines.result();
         return out;
     }
 
@@ -100,7 +116,7 @@ public:
             if (!slots_.contains(mesh_.slot(i)))
                 keep(i);
         }
-        for (const auto& [number, slot] : slots_)
+        for (auto& [number, slot] : slots_)
             cut(number, slot);
         if (!out_.any)
             return {};
@@ -161,55 +177,16 @@ private:
             const Material* material = material_of(mesh_.slot(i));
             return material != nullptr && lets_through(*material);
         });
-        for (auto at = slots_.begin(); at != slots_.end();)
-            at = leave_out_doubles(at->second) ? std::next(at) : slots_.erase(at);
+        for (auto at = slots_.begin(); at != slots_.end();) {
+            auto doubles = take_doubles(mesh_, at->second.triangles);
+            if (doubles)
+                at->second.doubles = std::move(*doubles);
+            at = doubles ? std::next(at) : slots_.erase(at);
+        }
         for (auto& [number, slot] : slots_) {
             slot.painted = painted_clear(slot);
             slot.tolerance = tolerance_of(slot);
         }
-    }
-
-    /// The corners of a triangle by their positions, the first one least.
-    std::array<uint32_t, 3> ordered(uint32_t triangle) const {
-        const Triangle& t = mesh_.triangles[triangle];
-        std::array<uint32_t, 3> corners{t.x, t.y, t.z};
-        std::sort(corners.begin(), corners.end(), [&](uint32_t a, uint32_t b) {
-            const glm::vec3& p = mesh_.positions[a];
-            const glm::vec3& q = mesh_.positions[b];
-            return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
-        });
-        return corners;
-    }
-
-    /// Leaves out triangles that lie on another one of the slot and show the same: the other sides of
-    /// leaves. POV-Ray shows both sides of all, and of two that are cut and rounded by themselves it
-    /// takes the second for the surface that a ray begins at, and loses all that is behind. False:
-    /// some that lie on others show something else.
-    bool leave_out_doubles(CutSlot& slot) const {
-        std::unordered_map<Hash, uint32_t> known;
-        std::vector<uint32_t> own;
-        for (const uint32_t triangle : slot.triangles) {
-            const std::array<uint32_t, 3> corners = ordered(triangle);
-            Hasher place;
-            for (const uint32_t corner : corners) {
-                for (int i = 0; i < 3; ++i)
-                    place.value(mesh_.positions[corner][i] + 0.0f);  // -0 is 0
-            }
-            const auto [at, fresh] = known.try_emplace(place.result(), triangle);
-            if (fresh) {
-                own.push_back(triangle);
-                continue;
-            }
-            const std::array<uint32_t, 3> others = ordered(at->second);
-            for (size_t k = 0; k < 3; ++k) {
-                if (mesh_.uvs[corners[k]] != mesh_.uvs[others[k]] ||
-                    (!mesh_.colors.empty() && mesh_.colors[corners[k]] != mesh_.colors[others[k]]))
-                    return false;
-            }
-            slot.doubles.push_back(triangle);
-        }
-        slot.triangles = std::move(own);
-        return true;
     }
 
     /// Whether colors of vertices make some of a slot clear.
@@ -268,21 +245,27 @@ private:
         const Material& material = *slot.material;
         const Texture& texture = material.alpha_texture;
         const MaskTexelsPtr texels = outlines_.texels(texture);
-        image::SeenTexels seen = image::unseen_texels(texels->width, texels->height);
+        slot.seen = image::unseen_texels(texels->width, texels->height);
         double pictures = 0;  // that all triangles together show
         for (const uint32_t triangle : slot.triangles) {
             glm::dvec2 at[3];
-            if (!place(texture, triangle, at) || !note_seen(seen, texture, at))
+            if (!place(texture, triangle, at) || !note_seen(slot.seen, texture, at))
                 return false;
             const glm::dvec2 a = at[1] - at[0];
             const glm::dvec2 b = at[2] - at[0];
             pictures += std::abs(a.x * b.y - a.y * b.x) / 2;
         }
-        const image::MaskCount count = image::count(*texels, seen);
+        const image::MaskCount count = image::count(*texels, slot.seen);
         const bool clip = material.alpha_mode == AlphaMode::Clip;
         if (count.seen == 0)
             return false;
-        slot.most = std::clamp(kMostEach * slot.triangles.size(), kMostOfFew, kMostOfMany);
+        // The triangles of a crowd, each of which shows one picture at most: fences repeat theirs.
+        // Taste: a larger value leaves the shapes of smaller bushes, for time.
+        constexpr size_t kCrowd = 64;
+        slot.crowd = slot.triangles.size() >= kCrowd &&
+                     pictures <= static_cast<double>(slot.triangles.size());
+        slot.most = std::clamp((slot.crowd ? kMostInCrowd : kMostEach) * slot.triangles.size(),
+                               kMostOfFew, kMostOfMany);
         if (options_.most_cut)
             slot.most = std::min(slot.most, (size_t{1} << *options_.most_cut) / slots_.size());
         // An outline is about as many triangles as corners, once for each picture, and the sides of
@@ -295,18 +278,13 @@ private:
         // So many blends behind each other look as a mask of them does, and POV-Ray bears no more.
         const bool deep = layers_ > kMostLayers;
         if (!slot.painted && (clip || deep || count.is_mask())) {
-            const std::optional<double> cutoff =
-                clip ? std::optional(limited(material.alpha_cutoff, 0, 1)) : std::nullopt;
-            // The triangles of a crowd, each of which shows one picture at most: fences repeat theirs.
-            // Taste: a larger value leaves the shapes of smaller bushes, for time.
-            constexpr size_t kCrowd = 64;
-            const bool crowd = slot.triangles.size() >= kCrowd &&
-                               pictures <= static_cast<double>(slot.triangles.size());
-            slot.full = clip ? *cutoff <= 0
+            if (clip)
+                slot.cutoff = limited(material.alpha_cutoff, 0, 1);
+            slot.full = clip ? *slot.cutoff <= 0
                              : count.sure == count.seen && count.clear == 0 && count.mean > 0.5;
             if (!slot.full)
-                slot.outline = outline_that_fits({texture, cutoff, seen, slot.tolerance, most},
-                                                 *texels, crowd);
+                slot.outline = outline_that_fits(
+                    {texture, slot.cutoff, slot.seen, slot.tolerance, most}, *texels, slot.crowd);
             slot.opaque = slot.full || slot.outline;
         }
         if (!slot.opaque)
@@ -332,32 +310,67 @@ private:
         out_.sources.push_back(static_cast<uint32_t>(triangle));
     }
 
-    void cut(uint16_t number, const CutSlot& slot) {
+    void cut(uint16_t number, CutSlot& slot) {
         const size_t before = out_.mesh.triangles.size();
         const size_t vertices = out_.mesh.positions.size();
-        std::optional<TriangleCutter> cutter;
-        if (!slot.full)
-            cutter.emplace(*slot.outline, slot.material->alpha_texture, job_);
-        for (size_t i = 0; i < slot.triangles.size(); ++i) {
-            if ((i & 0xffu) == 0xffu)
-                job_.check();
-            const uint32_t triangle = slot.triangles[i];
-            if (!slot.full && !cut_one(*cutter, triangle, slot, before + slot.most)) {
+        if (slot.full) {
+            keep_all(slot);
+        } else {
+            while (!cut_all(slot, before)) {
                 shrink(before, vertices);
+                if (coarsen(slot))
+                    continue;
                 trim(slot, before, vertices);
                 return;
             }
-            if (slot.full)
-                keep(triangle);
-        }
-        if (slot.full) {
-            for (const uint32_t whole : slot.doubles)
-                keep(whole);
         }
         out_.any = true;
         if (out_.opaque.size() <= number)
             out_.opaque.resize(size_t{number} + 1, 0);
         out_.opaque[number] = slot.opaque ? 1 : 0;
+    }
+
+    void keep_all(const CutSlot& slot) {
+        for (const uint32_t whole : slot.triangles)
+            keep(whole);
+        for (const uint32_t whole : slot.doubles)
+            keep(whole);
+    }
+
+    /// False: these are more triangles than the slot may become.
+    bool cut_all(const CutSlot& slot, size_t before) {
+        TriangleCutter cutter(*slot.outline, slot.material->alpha_texture, job_);
+        return std::all_of(slot.triangles.begin(), slot.triangles.end(), [&](uint32_t triangle) {
+            return cut_one(cutter, triangle, slot, before + slot.most);
+        });
+    }
+
+    /// Finds the outline by which a crowd does not become too many triangles; none: it has no such.
+    void try_crowd(CutSlot& slot) {
+        const size_t vertices = out_.mesh.positions.size();
+        bool fits = cut_all(slot, 0);
+        while (!fits && coarsen(slot)) {
+            shrink(0, vertices);
+            fits = cut_all(slot, 0);
+        }
+        slot.expected = out_.mesh.triangles.size();
+        if (!fits)
+            slot.outline = nullptr;
+        shrink(0, vertices);
+    }
+
+    /// Gives a crowd an outline of fewer corners. False: there is none.
+    bool coarsen(CutSlot& slot) const {
+        if (!slot.crowd || !slot.opaque)
+            return false;
+        const Texture& texture = slot.material->alpha_texture;
+        const size_t corners = slot.outline->inside.points.size() - 1;
+        const MaskOutlinePtr next =
+            outline_that_fits({texture, slot.cutoff, slot.seen, slot.tolerance, corners},
+                              *outlines_.texels(texture), true);
+        if (next)
+            slot.outline = next;
+        return next != nullptr;
     }
 
     /// Cuts off what is clear of a slot that became too many triangles, or keeps it.
@@ -367,20 +380,12 @@ private:
             hull.outline = outlines_.hull(slot.material->alpha_texture, slot.hull_corners, job_);
         else
             hull.outline = nullptr;
-        bool fits = hull.outline != nullptr;
-        if (fits) {
-            TriangleCutter cutter(*hull.outline, slot.material->alpha_texture, job_);
-            for (size_t i = 0; fits && i < slot.triangles.size(); ++i)
-                fits = cut_one(cutter, slot.triangles[i], hull, before + slot.most);
-            out_.any = out_.any || fits;
-        }
-        if (fits)
+        if (hull.outline && cut_all(hull, before)) {
+            out_.any = true;
             return;
+        }
         shrink(before, vertices);
-        for (const uint32_t whole : slot.triangles)
-            keep(whole);
-        for (const uint32_t whole : slot.doubles)
-            keep(whole);
+        keep_all(slot);
     }
 
     /// False: there are more triangles than `most`.

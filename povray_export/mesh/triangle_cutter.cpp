@@ -129,7 +129,7 @@ TriangleCutter::TriangleCutter(const MaskOutline& outline, const Texture& textur
         const PlaneBox box = box_of(at);
         for (int row = index(box.low.y); row <= index(box.high.y); ++row) {
             for (int column = index(box.low.x); column <= index(box.high.x); ++column)
-                squares_[static_cast<size_t>(row * side_ + column)].push_back(i);
+                squares_[square(column, row)].push_back(i);
         }
     }
 }
@@ -239,7 +239,7 @@ void TriangleCutter::each_piece_of(const PictureTile& tile, const glm::dvec2 (&a
         if (!(range.low <= range.high))
             continue;
         for (int x = index(range.low - kThin); x <= index(range.high + kThin); ++x) {
-            for (const uint32_t piece : squares_[static_cast<size_t>(y * side_ + x)]) {
+            for (const uint32_t piece : squares_[square(x, y)]) {
                 if (std::exchange(visited_[piece], visit_) != visit_)
                     visit(piece);
             }
@@ -337,8 +337,7 @@ bool TriangleCutter::inside(const glm::dvec2& at) const {
     const auto turn = [](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
         return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     };
-    const std::vector<uint32_t>& near =
-        squares_[static_cast<size_t>(index(place.y) * side_ + index(place.x))];
+    const std::vector<uint32_t>& near = squares_[square(index(place.x), index(place.y))];
     return std::any_of(near.begin(), near.end(), [&](uint32_t i) {
         const glm::uvec3& t = inside_.triangles[i];
         const glm::dvec2& a = inside_.points[t.x];

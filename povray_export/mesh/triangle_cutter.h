@@ -55,6 +55,10 @@ private:
     void cut_line(const glm::dvec2 (&at)[3], size_t most);
     void add_strip(const glm::dvec3& along, double low, double high);
     bool inside(const glm::dvec2& at) const;
+    /// The place in squares_ of a square.
+    size_t square(int column, int row) const {
+        return static_cast<size_t>(row) * static_cast<size_t>(side_) + static_cast<size_t>(column);
+    }
     uint32_t corner(uint64_t key, const glm::dvec3& weights);
 
     const PlaneTriangles& inside_;

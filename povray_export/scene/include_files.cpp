@@ -128,11 +128,32 @@ CutForecast IncludeFiles::forecast(Hash name, const IncludeFile& include, const 
     const std::filesystem::path path = folder_ / "r" / (hex16(name) + ".cut");
     CutForecast out;
     std::ifstream kept(path);
-    if (kept >> out.by_outline >> out.triangles)
+    if (kept >> out.by_outline >> out.triangles >> out.outlines)
         return out;
     out = cut_forecast(model_, *include.representation, include.options, outlines_, job);
-    write_file(path, text(out.by_outline ? 1 : 0, ' ', out.triangles, '\n'));
+    write_file(path, text(out.by_outline ? 1 : 0, ' ', out.triangles, ' ', out.outlines, '\n'));
     return out;
+}
+
+/// Gives files of one mesh that are cut by the same outlines the same options, the finest ones.
+void IncludeFiles::share_outlines() {
+    std::unordered_map<Hash, int> finest;
+    for (const bool all_known : {false, true}) {
+        for (IncludeFile& include : files_) {
+            if (include.same || !include.options.outline)
+                continue;
+            RepresentationOptions others = include.options;
+            others.outline.reset();
+            const Hash key = Hasher()
+                                 .value(file_hash(*include.representation, others))
+                                 .value(include.outlines)
+                                 .result();
+            int& least = finest.try_emplace(key, *include.options.outline).first->second;
+            if (all_known)
+                include.options.outline = least;
+            least = std::min(least, *include.options.outline);
+        }
+    }
 }
 
 /// Lets masks of all files together become no more than `most` triangles, or each but one of them.
@@ -170,9 +191,11 @@ void IncludeFiles::name(uint64_t budget, uint64_t used, const Job& job) {
         include.forecast = file_hash(*include.representation, include.options);
         const CutForecast found = forecast(*include.forecast, include, job);
         include.cut_triangles = found.triangles;
+        include.outlines = found.outlines;
         if (!found.by_outline)
             include.options.outline.reset();
     });
+    share_outlines();
     merge();
     limit_cut(most_cut_triangles(budget, used, triangles()));
     for (IncludeFile& include : files_) {

@@ -21,6 +21,7 @@ struct IncludeFile {
     std::optional<size_t> same = {};    // the file that stands for this one
     std::optional<Hash> forecast = {};  // the name of the file of what is cut
     uint64_t cut_triangles = 0;         // about what its masks become
+    Hash outlines = 0;                  // those that these are cut by
     bool pictured = false;              // true: it shows pictures, as fine as they are seen
     double texel = std::numeric_limits<double>::infinity();  // at its nearest use
     uint64_t bytes = 0;
@@ -66,6 +67,7 @@ public:
 
 private:
     void merge();
+    void share_outlines();
     CutForecast forecast(Hash name, const IncludeFile& include, const Job& job);
     uint64_t triangles() const;
     void limit_cut(uint64_t most);

@@ -58,7 +58,7 @@ TEST(IncludeFiles, ASecondExportFindsWhatIsToBeCut) {
     ASSERT_EQ(kept().size(), 1u);
     EXPECT_EQ(exported({card()}, leaf(disk(16)), options, problems).cut_triangles,
               first.cut_triangles);
-    write_file(kept()[0], "1 77");
+    write_file(kept()[0], "1 77 5");
     EXPECT_EQ(exported({card()}, leaf(disk(16)), options, problems).cut_triangles, 77u);
     write_file(kept()[0], "what");
     EXPECT_EQ(exported({card()}, leaf(disk(16)), options, problems).cut_triangles,

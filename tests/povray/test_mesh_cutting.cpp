@@ -340,10 +340,10 @@ TEST(MeshCutting, NoiseNetsAndHugeTilingsKeepTheirTextures) {
 }
 
 TEST(MeshCutting, ACrowdOfFineLeavesTookTenTimesAsLongThroughTheirTextures) {
-    // A comb of 40 fine teeth on each of 300 pictures: more triangles than pay.
+    // A comb of 36 fine teeth on each of 300 pictures: more triangles than pay.
     const Texture comb = alpha_of(256, [](double u, double v) {
         const double wide = 0.3 * v;
-        return u < 0.9 && std::abs(std::fmod(20 * u, 1.0) - 0.5) < wide && v < 0.95 ? 1 : 0;
+        return u < 0.9 && std::abs(std::fmod(40 * u, 1.0) - 0.5) < wide && v < 0.95 ? 1 : 0;
     });
     Mesh mesh;
     for (int i = 0; i < 300; ++i)

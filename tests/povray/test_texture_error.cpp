@@ -181,16 +181,18 @@ TEST(PovrayTextureError, CoarselyCutLeavesShowedTheBlackBesideThem) {
     std::vector<glm::vec4> texels(size_t{kSide} * kSide, glm::vec4(0, 0, 0, 0.01));
     for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < 20; ++x)
-            texels[static_cast<size_t>(y * kSide + x)] = glm::vec4(0.2, 0.6, 0.2, 1);
+            texels[static_cast<size_t>(y) * kSide + static_cast<size_t>(x)] =
+                glm::vec4(0.2, 0.6, 0.2, 1);
     }
-    texels[static_cast<size_t>(100 * kSide + 200)] = glm::vec4(1, 0, 0, 1);
+    texels[size_t{100} * kSide + 200] = glm::vec4(1, 0, 0, 1);
     const Texture texture = texture_of(scenes::picture(kSide, texels));
     const auto green_at = [&](PigmentContent content, int x, int y) {
         PictureWriter writer;
         writer.pigment(texture, content, {});
         const image::Image found = only_picture(writer, "leaf");
         EXPECT_EQ(found.width, kSide);
-        return decode_srgb(found.pixels[4 * static_cast<size_t>(y * kSide + x) + 1]);
+        return decode_srgb(
+            found.pixels[4 * (static_cast<size_t>(y) * kSide + static_cast<size_t>(x)) + 1]);
     };
     EXPECT_NEAR(green_at(PigmentContent::Leaf, 10, 50), 0.6, 0.01);
     EXPECT_NEAR(green_at(PigmentContent::Leaf, 25, 50), 0.6, 0.08);
