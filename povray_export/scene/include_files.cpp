@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <unordered_set>
 
 namespace lodestone::povray {
 namespace {
@@ -269,6 +270,28 @@ std::string IncludeFiles::statements() const {
             out.append("#include \"r/").append(hex16(include.hash)).append(".inc\"\n");
     }
     return out;
+}
+
+void IncludeFiles::add_to(ExportReport& report) const {
+    std::unordered_set<Hash> shown;
+    for (const IncludeFile& include : files_) {
+        if (include.same)
+            continue;
+        report.cpu_s += include.cpu_s;
+        if (!include.drawn)
+            continue;
+        report.bytes += include.bytes;
+        ++report.files;
+        ++report.representations;
+        report.cut_triangles += include.cut_triangles;
+        if (include.options.sky && !shown.insert(include.representation->summary.hash).second)
+            ++report.sky_copies;
+        report.written += include.written ? 1u : 0u;
+    }
+    const PictureFolder::PictureTotals pictures = pictures_.totals();
+    report.bytes += pictures.bytes;
+    report.files += pictures.files;
+    report.written += pictures.written;
 }
 
 bool IncludeFiles::refracts() const {

@@ -4,6 +4,7 @@
 
 #include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/scene/representation_writer.h"
+#include "povray_export/scene/scene_writer.h"
 
 #include <filesystem>
 #include <limits>
@@ -61,7 +62,8 @@ public:
     size_t size() const { return files_.size(); }
     /// The text that includes all files, and names those of what is cut.
     std::string statements() const;
-    PictureFolder::PictureTotals pictures() const { return pictures_.totals(); }
+    /// Adds what was written, or found again, to a report: these files and their pictures.
+    void add_to(ExportReport& report) const;
     /// Whether any file bends light.
     bool refracts() const;
 

@@ -94,26 +94,7 @@ public:
         write_text("scene.ini",
                    render_settings(view_, shading_, options_.antialiasing, transparent()));
         ExportReport report = report_;
-        std::set<Hash> shown;
-        for (size_t i = 0; i < includes_.size(); ++i) {
-            const IncludeFile& include = includes_.at(i);
-            if (includes_.own(i) != i)
-                continue;
-            report.cpu_s += include.cpu_s;
-            if (!include.drawn)
-                continue;
-            report.bytes += include.bytes;
-            ++report.files;
-            ++report.representations;
-            report.cut_triangles += include.cut_triangles;
-            if (include.options.sky && !shown.insert(include.representation->summary.hash).second)
-                ++report.sky_copies;
-            report.written += include.written ? 1u : 0u;
-        }
-        const PictureFolder::PictureTotals pictures = includes_.pictures();
-        report.bytes += pictures.bytes;
-        report.files += pictures.files;
-        report.written += pictures.written;
+        includes_.add_to(report);
         report.cpu_s += before_files - start + thread_cpu_seconds() - after_files;
         job_.progress(1);
         return report;
