@@ -25,6 +25,10 @@ constexpr double kCoat = 0.25;
 /// angle everything reflects.
 /// Fitted: by tests/bench/peers/fit_grazing.py, at specular 0.2 and 1, within 15 % at 80 degrees.
 constexpr double kSaturation = 0.75;
+/// The least share of the surface that the layer of gloss covers.
+/// Taste: what POV-Ray interpolates between two angles is then off by 3 % at most; a larger value
+/// makes it better, and the surface below needs a stronger finish.
+constexpr double kLeastCover = 0.25;
 
 /// The reflection of surfaces of one roughness.
 struct GrazingRow {
@@ -32,24 +36,80 @@ struct GrazingRow {
     double log_exponent;
     double highlight;
     double lamp_growth;
-    std::array<double, kAngleCount> sky;  // of a uniform sky of 1, by angle
+    std::array<double, kAngleCount> sky;    // of a uniform sky of 1, by angle
+    std::array<double, kAngleCount> matte;  // of the surface without gloss, over facing
 };
 
 /// The gloss by roughness, rising.
 /// Fitted: by tests/bench/peers/fit_grazing.py, on planes rendered by Cycles of Blender 3.4.
 /// Highlights of surfaces that mirror are not used.
 const GrazingRow kGrazingRows[] = {
-    {0.10, std::log(114.5), 0.0401, 2, {0.040, 0.046, 0.058, 0.089, 0.171, 0.385, 0.757}},
-    {0.20, std::log(114.5), 0.0401, 2, {0.040, 0.046, 0.058, 0.089, 0.167, 0.349, 0.544}},
-    {0.25, std::log(114.5), 0.0401, 2, {0.040, 0.046, 0.058, 0.089, 0.161, 0.311, 0.454}},
-    {0.30, std::log(95.4), 0.0467, 2, {0.040, 0.046, 0.058, 0.087, 0.151, 0.268, 0.377}},
-    {0.40, std::log(55.2), 0.0401, 3, {0.039, 0.046, 0.056, 0.079, 0.123, 0.192, 0.259}},
-    {0.50, std::log(31.9), 0.0295, 5, {0.037, 0.043, 0.051, 0.067, 0.095, 0.137, 0.181}},
-    {0.60, std::log(22.2), 0.0160, 11, {0.034, 0.038, 0.044, 0.054, 0.072, 0.100, 0.131}},
-    {0.70, std::log(15.4), 0.0087, 19, {0.029, 0.032, 0.036, 0.044, 0.055, 0.075, 0.098}},
-    {0.80, std::log(7.4), 0.0118, 11, {0.023, 0.026, 0.029, 0.035, 0.043, 0.057, 0.075}},
-    {0.90, std::log(3.0), 0.0118, 8, {0.017, 0.020, 0.023, 0.027, 0.034, 0.044, 0.058}},
-    {1.00, std::log(1.4), 0.0118, 5, {0.013, 0.015, 0.018, 0.021, 0.026, 0.035, 0.046}},
+    {0.10,
+     std::log(197.8),
+     0.0118,
+     1,
+     {0.040, 0.046, 0.058, 0.089, 0.171, 0.385, 0.757},
+     {1.000, 1.000, 0.997, 0.988, 0.953, 0.850, 0.634}},
+    {0.20,
+     std::log(137.4),
+     0.0344,
+     1,
+     {0.040, 0.046, 0.058, 0.089, 0.167, 0.349, 0.544},
+     {1.000, 0.999, 0.998, 0.992, 0.967, 0.892, 0.727}},
+    {0.25,
+     std::log(95.4),
+     0.0401,
+     2,
+     {0.040, 0.046, 0.058, 0.089, 0.161, 0.311, 0.454},
+     {1.000, 0.999, 0.998, 0.993, 0.974, 0.913, 0.773}},
+    {0.30,
+     std::log(95.4),
+     0.0467,
+     2,
+     {0.040, 0.046, 0.058, 0.087, 0.151, 0.268, 0.377},
+     {1.000, 0.999, 0.998, 0.995, 0.982, 0.934, 0.819}},
+    {0.40,
+     std::log(46.0),
+     0.0543,
+     2,
+     {0.039, 0.046, 0.056, 0.079, 0.123, 0.192, 0.259},
+     {1.000, 0.999, 0.998, 0.999, 0.996, 0.977, 0.912}},
+    {0.50,
+     std::log(31.9),
+     0.0295,
+     5,
+     {0.037, 0.043, 0.051, 0.067, 0.095, 0.137, 0.181},
+     {1.000, 0.999, 0.999, 1.003, 1.011, 1.020, 1.004}},
+    {0.60,
+     std::log(22.2),
+     0.0218,
+     7,
+     {0.034, 0.038, 0.044, 0.054, 0.072, 0.100, 0.131},
+     {1.000, 0.998, 1.000, 1.006, 1.025, 1.062, 1.097}},
+    {0.70,
+     std::log(15.4),
+     0.0138,
+     9,
+     {0.029, 0.032, 0.036, 0.044, 0.055, 0.075, 0.098},
+     {1.000, 0.998, 1.000, 1.010, 1.040, 1.104, 1.191}},
+    {0.80,
+     std::log(7.4),
+     0.0254,
+     3,
+     {0.023, 0.026, 0.029, 0.035, 0.043, 0.057, 0.075},
+     {1.000, 0.998, 1.000, 1.013, 1.054, 1.147, 1.285}},
+    {0.90,
+     std::log(3.0),
+     0.0254,
+     2,
+     {0.017, 0.020, 0.023, 0.027, 0.034, 0.044, 0.058},
+     {1.000, 0.998, 1.000, 1.016, 1.069, 1.188, 1.377}},
+    {1.00,
+     std::log(1.4),
+     0.0160,
+     2,
+     {0.013, 0.015, 0.018, 0.021, 0.026, 0.035, 0.046},
+     {1.000, 0.997, 1.002, 1.020, 1.083, 1.233, 1.470}},
 };
 
 GrazingRow grazing_row(double roughness) {
@@ -63,10 +123,70 @@ GrazingRow grazing_row(double roughness) {
                    std::lerp(a.log_exponent, b.log_exponent, t),
                    std::lerp(a.highlight, b.highlight, t),
                    std::lerp(a.lamp_growth, b.lamp_growth, t),
+                   {},
                    {}};
     for (size_t k = 0; k < kAngleCount; ++k)
         out.sky[k] = std::lerp(a.sky[k], b.sky[k], t);
+    for (size_t k = 0; k < kAngleCount; ++k)
+        out.matte[k] = std::lerp(a.matte[k], b.matte[k], t);
     return out;
+}
+
+/// The gloss as the color of a pigment.
+struct CoveredGloss {
+    std::array<double, kAngleCount> white;    // at each angle, over that of facing
+    std::array<double, kAngleCount> through;  // the share of what is below that is seen
+};
+
+/// The gloss as a layer: it lets the surface below through as that is bright at an angle, and is
+/// the brighter itself the less it covers.
+CoveredGloss covered_gloss(const GrazingGloss& gloss) {
+    const double brightest = *std::max_element(gloss.matte.begin(), gloss.matte.end());
+    CoveredGloss out{};
+    for (size_t k = 0; k < kAngleCount; ++k) {
+        out.through[k] = (1 - kLeastCover) * gloss.matte[k] / brightest;
+        out.white[k] = gloss.grow[k] * (1 - out.through[0]) / (1 - out.through[k]);
+    }
+    return out;
+}
+
+void append_grazing_pigment(std::string& out, const CoveredGloss& gloss) {
+    // Law: POV-Ray's pattern is 1 for what faces the eye, and 1/2 at no angle.
+    constexpr double kFacing = 1;
+    // Law: degrees of half a turn, over which the pattern falls to 0.
+    constexpr double kHalfTurn = 180;
+    out += "pigment{aoi pigment_map{";
+    for (size_t k = kAngleCount; k-- > 0;) {
+        out += '[';
+        append_number(out, kFacing - GrazingGloss::kAngles[k] / kHalfTurn, kGlossDigits);
+        out += " rgbt <";
+        for (int i = 0; i < 3; ++i) {
+            append_number(out, gloss.white[k], kGlossDigits);
+            out += ',';
+        }
+        append_number(out, gloss.through[k], kGlossDigits);
+        out += ">]";
+    }
+    out += "}}";
+}
+
+/// The numbers of a finish that depend on how the gloss is drawn.
+struct GlossScale {
+    double ambient;
+    double highlight;  // times what it is
+    double growth;     // POV-Ray's metallic
+};
+
+void append_grazing_finish(std::string& out, const GrazingGloss& gloss, const GlossScale& scale) {
+    const auto named = [&](const char* name, double value) {
+        out += name;
+        append_number(out, value, 6);
+    };
+    named("finish{ambient ", scale.ambient);
+    named(" emission 0 diffuse 0 specular albedo ", gloss.highlight * scale.highlight);
+    named(" roughness ", gloss.roughness);
+    named(" metallic ", scale.growth);
+    out += " reflection{rgb 0}}";
 }
 
 }  // namespace
@@ -89,43 +209,34 @@ std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look) {
     out.sky = sky[0];
     for (size_t k = 0; k < kAngleCount; ++k)
         out.grow[k] = sky[k] / sky[0];
+    out.matte = row.matte;
     out.highlight = weight * row.highlight;
     out.roughness = std::exp(-row.log_exponent);
     out.lamp_growth = row.lamp_growth;
     return out;
 }
 
-void append_grazing_pigment(std::string& out, const GrazingGloss& gloss, double transmit) {
-    // Law: POV-Ray's pattern is 1 for what faces the eye, and 1/2 at no angle.
-    constexpr double kFacing = 1;
-    // Law: degrees of half a turn, over which the pattern falls to 0.
-    constexpr double kHalfTurn = 180;
-    out += "pigment{aoi pigment_map{";
-    for (size_t k = kAngleCount; k-- > 0;) {
-        out += '[';
-        append_number(out, kFacing - GrazingGloss::kAngles[k] / kHalfTurn, kGlossDigits);
-        out += " rgbt <";
-        for (int i = 0; i < 3; ++i) {
-            append_number(out, gloss.grow[k], kGlossDigits);
-            out += ',';
-        }
-        append_number(out, transmit, 6);
-        out += ">]";
-    }
-    out += "}} ";
+void append_gloss(std::string& out, const GrazingGloss& gloss, double sky, double times) {
+    const CoveredGloss plain{gloss.grow, {}};
+    const CoveredGloss layer = covered_gloss(gloss);
+    // The highlight of the layer follows another pigment: it is to grow as much at this angle.
+    // Taste: seen flatter little is left of a surface.
+    constexpr size_t kSame = kAngleCount - 2;
+    const double growth =
+        gloss.lamp_growth * (layer.white[kSame] - 1) / std::max(gloss.grow[kSame] - 1, 1e-3);
+    append_grazing_pigment(out, plain);
+    out += ' ';
+    append_grazing_finish(out, gloss, {gloss.sky * sky * times, times, growth});
 }
 
-void append_grazing_finish(std::string& out, const GrazingGloss& gloss, double sky, double light,
-                           double lamps) {
-    const auto named = [&](const char* name, double value) {
-        out += name;
-        append_number(out, value, 6);
-    };
-    named("finish{ambient ", gloss.sky * sky * light);
-    named(" emission 0 diffuse 0 specular albedo ", gloss.highlight * lamps);
-    named(" roughness ", gloss.roughness);
-    named(" metallic ", gloss.lamp_growth);
-    out += " reflection{rgb 0}}";
+GlossLayer gloss_layer(const GrazingGloss& gloss, double sky) {
+    const CoveredGloss layer = covered_gloss(gloss);
+    GlossLayer out;
+    append_grazing_pigment(out.pigment, layer);
+    append_grazing_finish(out.finish, gloss,
+                          {gloss.sky * sky / (1 - layer.through[0]), 1, gloss.lamp_growth});
+    out.below = 1 / layer.through[0];
+    return out;
 }
 
 }  // namespace lodestone::povray

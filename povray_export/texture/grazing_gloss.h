@@ -7,6 +7,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 namespace lodestone::povray {
 
@@ -16,10 +17,11 @@ struct GrazingGloss {
     /// Taste: more knots follow the curve closer, in longer texts.
     static constexpr std::array<double, 7> kAngles{0, 40, 50, 60, 70, 80, 90};
 
-    double sky = 0;                           // of a uniform sky of 1, when facing the eye
-    std::array<double, kAngles.size()> grow;  // at each angle, over that; also the pigment
-    double highlight = 0;                     // albedo of the highlight of lamps, when facing
-    double roughness = 1;                     // that of the highlight: 1 / exponent
+    double sky = 0;                            // of a uniform sky of 1, when facing the eye
+    std::array<double, kAngles.size()> grow;   // at each angle, over that
+    std::array<double, kAngles.size()> matte;  // the light of the surface below, over facing
+    double highlight = 0;                      // albedo of the highlight of lamps, when facing
+    double roughness = 1;                      // that of the highlight: 1 / exponent
     double lamp_growth = 1;  // POV-Ray's metallic: how the highlight follows the pigment
 };
 
@@ -27,12 +29,16 @@ struct GrazingGloss {
 /// none, and of what is so smooth that it mirrors its surroundings.
 std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look);
 
-/// Appends pigment{...}: white that grows with the angle of view, clear by `transmit`.
-void append_grazing_pigment(std::string& out, const GrazingGloss& gloss, double transmit);
+/// Appends pigment{...} finish{...} of the gloss alone: white that grows with the angle of view, by
+/// `times` as strong. `sky`: the share of a uniform sky's light that arrives.
+void append_gloss(std::string& out, const GrazingGloss& gloss, double sky, double times);
 
-/// Appends the finish for that pigment. `sky`: the share of a uniform sky's light that arrives;
-/// `light` and `lamps` scale what is reflected of the sky and of lamps.
-void append_grazing_finish(std::string& out, const GrazingGloss& gloss, double sky, double light,
-                           double lamps);
+/// The text of the gloss as a layer over the matte surface, which shines through by angle.
+struct GlossLayer {
+    std::string pigment;  // pigment{...}
+    std::string finish;   // finish{...}
+    double below = 1;     // the factor on the finish of the surface below
+};
+GlossLayer gloss_layer(const GrazingGloss& gloss, double sky);
 
 }  // namespace lodestone::povray

@@ -74,11 +74,13 @@ public:
         if (surface.lamp || !surface.plain || mirror)
             return "texture{" + solid(material, surface) + '}';
         std::string layers = "texture{" + surface.pigment;
-        append_finish(layers, surface.finish, 1 / (1 - kVeil), glm::dvec3(0.0));
         if (surface.gloss) {
-            layers += "} texture{" + grazing(surface, 1 - kVeil, 1 / kVeil, 1);
-            return pictures_.layered(layers + '}');
+            const GlossLayer gloss = gloss_layer(*surface.gloss, share(surface_.sky, 1));
+            append_finish(layers, surface.finish, gloss.below, glm::dvec3(0.0));
+            layers += "} texture{" + pictures_.declared_pigment(gloss.pigment) + ' ';
+            return pictures_.layered(layers + gloss.finish + '}');
         }
+        append_finish(layers, surface.finish, 1 / (1 - kVeil), glm::dvec3(0.0));
         Finish veil;
         veil.ambient = surface.white;
         append_number(layers += "} texture{pigment{rgbt <1,1,1,", 1 - kVeil, 6);
@@ -112,16 +114,6 @@ private:
     };
 
     bool shown(const Texture& texture) const { return texture && surface_.uvs; }
-
-    /// The text of gloss that follows the angle of view: its answer to the sky is `light` times
-    /// what it is, and its highlights are `lamps` times.
-    Body grazing(const SolidSurface& surface, double transmit, double light, double lamps) {
-        std::string white;
-        append_grazing_pigment(white, *surface.gloss, transmit);
-        Body out = pictures_.declared_pigment(white) + ' ';
-        append_grazing_finish(out, *surface.gloss, share(surface_.sky, 1), light, lamps);
-        return out;
-    }
 
     /// `whole`: the picture is not made smaller.
     std::string pigment(const Texture& texture, PigmentContent content, bool whole = false) {
@@ -362,7 +354,9 @@ private:
         if (surface.lamp)
             entries.emplace_back(1, glow(material.emission_texture, parts));
         if (surface.gloss) {
-            entries.emplace_back(1, grazing(surface, 0, parts, parts));
+            Body text;
+            append_gloss(text, *surface.gloss, share(surface_.sky, 1), parts);
+            entries.emplace_back(1, std::move(text));
         } else if (surface.plain) {
             Finish rest;
             rest.ambient = surface.white;

@@ -126,6 +126,25 @@ TEST(PovrayRenderGloss, ASkyIsReflectedMoreByWhatIsSeenAtAGrazingAngle) {
     EXPECT_NEAR(seen(matte, 75, 1), 0, 0.001);
 }
 
+// Grass and sand of a high roughness were too dark far away.
+TEST(PovrayRenderGloss, ARoughSurfaceIsBrighterWhereItIsSeenFlat) {
+    if (!scenes::have_povray())
+        GTEST_SKIP();
+    // Measured in Cycles, the answer of the matte part to a sky at 80 degrees, over that of facing.
+    const std::pair<double, double> measured[] = {{0.4, 0.977}, {0.5, 1.02}, {0.9, 1.188}};
+    for (const auto& [roughness, value] : measured) {
+        Material dark = black(roughness);
+        dark.specular = 0.1;
+        Material white = dark;
+        white.base_color = glm::dvec3(0.6);
+        const auto matte = [&](double angle) {
+            return seen(white, angle, 1) - seen(dark, angle, 1);
+        };
+        EXPECT_NEAR(matte(80) / matte(0), value, 0.01) << roughness;
+        EXPECT_NEAR(matte(75) / matte(0), 0.5 * (1 + matte(80) / matte(0)), 0.06) << roughness;
+    }
+}
+
 TEST(PovrayRenderGloss, ALowSunShinesOnWhatIsSeenAgainstIt) {
     if (!scenes::have_povray())
         GTEST_SKIP();

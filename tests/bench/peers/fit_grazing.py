@@ -11,7 +11,10 @@ highlight of suns is Blinn's, times 1 + growth (sky by angle over that of facing
 POV-Ray's `metallic` makes of a pigment brighter than white; its albedo, exponent and growth are
 those with the least squared difference of the display-encoded picture on a gray of 0.18. Prints a
 row per roughness, what is left in 255ths, and what is left with the best highlight that does not
-grow. Then the sky at other values of specular, over that at 0.5. Takes 2 minutes; needs numpy.
+grow. The matte surface below changes by angle, too (Disney's diffuse term): `matte` is
+its answer to the sky over that of facing. The layer of gloss lets that much through, so that it
+covers less where the surface is bright, and its pigment is brighter by as much. Then the sky at
+other values of specular, over that at 0.5. Takes 3 minutes; needs numpy.
 """
 
 import itertools
@@ -35,19 +38,20 @@ EXPONENTS = 1.2 ** np.arange(1, 30)
 GROWTHS = np.arange(0, 30.5, 1)
 ALBEDOS = np.geomspace(0.003, 0.1, 24)
 GRAY = 0.18
+VEIL = 0.25  # the least share that the layer covers, as in texture_writer.cpp
 
 
-def black(roughness, specular):
+def plain(roughness, specular, white):
     material = bpy.data.materials.new("M")
     material.use_nodes = True
     node = material.node_tree.nodes["Principled BSDF"]
-    node.inputs["Base Color"].default_value = (0, 0, 0, 1)
+    node.inputs["Base Color"].default_value = (white, white, white, 1)
     node.inputs["Specular"].default_value = specular
     node.inputs["Roughness"].default_value = roughness
     return material
 
 
-def build(specular):
+def build(specular, white=0.0):
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -69,7 +73,7 @@ def build(specular):
     scene.collection.objects.link(camera)
     scene.camera = camera
     for row, roughness in enumerate(ROUGHNESS):
-        material = black(roughness, specular)
+        material = plain(roughness, specular, white)
         for column, degrees in enumerate(ANGLES):
             angle = math.radians(degrees)
             u = mathutils.Vector((0.45, 0, -0.45 * math.tan(angle)))
@@ -154,7 +158,13 @@ def geometry():
     return half, facing, 1 - fading
 
 
-def fit(sky, suns):
+def pigment(sky, matte):
+    """The pigment over that of facing, at every angle."""
+    covers = 1 - (1 - VEIL) * matte / max(matte[ANGLES.index(angle)] for angle in WRITTEN)
+    return sky / sky[0] * covers[0] / covers
+
+
+def fit(white, suns):
     """(left, exponent, growth, albedo) of one roughness, and what is left without growth."""
     half, facing, kept = geometry()
     angles = np.radians(ANGLES)
@@ -165,7 +175,7 @@ def fit(sky, suns):
     target = encoded(base + suns)
     found = []
     for exponent, growth in itertools.product(EXPONENTS, GROWTHS):
-        grown = 1 + growth * kept[:, None] * (sky / sky[0] - 1)[None, :]
+        grown = 1 + growth * kept[:, None] * (white - 1)[None, :]
         unit = (exponent + 2) / 8 * half**exponent * grown
         for albedo in ALBEDOS:
             wrong = ((encoded(base + albedo * unit) - target) ** 2 * weights).sum() / weights.sum()
@@ -178,12 +188,15 @@ def main():
     scene = build(0.5)
     sky = sky_of(scene)
     suns = suns_of(scene)
+    mattes = sky_of(build(0.0, 0.8))
+    mattes /= mattes[:, :1]
     columns = [ANGLES.index(angle) for angle in WRITTEN]
     for row, roughness in enumerate(ROUGHNESS):
-        (left, exponent, growth, albedo), plain = fit(sky[row], suns[:, row])
+        (left, exponent, growth, albedo), plain = fit(pigment(sky[row], mattes[row]), suns[:, row])
         print(
             f"FIT {roughness:4.2f} exponent {exponent:6.1f} albedo {albedo:.4f} growth {growth:g} "
-            f"sky {sky[row][columns].round(3)} left {left:5.2f}, without growth {plain:5.2f}"
+            f"sky {sky[row][columns].round(3)} matte {mattes[row][columns].round(3)} "
+            f"left {left:5.2f}, without growth {plain:5.2f}"
         )
     for specular in (0.2, 1.0):
         ratio = sky_of(build(specular)) / sky
