@@ -15,6 +15,7 @@ except ImportError:  # benches alone need it
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from bench.peers import bench_real as bench  # noqa: E402
+from bench.peers.gray_with_alpha import is_gray_with_alpha  # noqa: E402
 
 
 def view(cycles_s: float, cpu_s: float, difference: float) -> dict:
@@ -26,6 +27,22 @@ def view(cycles_s: float, cpu_s: float, difference: float) -> dict:
 
 
 class Real(unittest.TestCase):
+    def test_pictures_that_cycles_shows_too_bright_are_known(self):
+        head = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + bytes(8) + b"\x08"
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "stream.png"
+            self.assertFalse(is_gray_with_alpha(path))
+            for content, expected in (
+                (head + b"\x04\0\0\0", True),
+                (head + b"\x06\0\0\0", False),
+                (head, False),
+                (b"\xff\xd8\xff" + head + b"\x04", False),
+                (b"", False),
+            ):
+                path.write_bytes(content)
+                self.assertEqual(is_gray_with_alpha(path), expected, content)
+            self.assertFalse(is_gray_with_alpha(Path(folder)))
+
     def test_difference_and_brightness_are_of_covered_pixels(self):
         pictures = {"a": numpy.full((2, 2, 4), 0.5), "b": numpy.full((2, 2, 4), 0.4)}
         pictures["a"][0, 0] = 1.0

@@ -15,10 +15,21 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.peers.gray_with_alpha import is_gray_with_alpha  # noqa: E402
 from bench.scenes import night_scenes  # noqa: E402
 
 
+def mend_gray_with_alpha() -> None:
+    """Cycles of Blender 3.4 divides PNGs of gray and alpha by their alpha, unless they are packed:
+    a stream of an alpha of 0.06 then shines like a lamp."""
+    for image in bpy.data.images:
+        path = Path(bpy.path.abspath(image.filepath, library=image.library))
+        if image.source == "FILE" and image.packed_file is None and is_gray_with_alpha(path):
+            image.pack()
+
+
 def cycles(job: dict) -> None:
+    mend_gray_with_alpha()
     scene = bpy.context.scene
     if job["camera"]:
         scene.camera = scene.objects[job["camera"]]
