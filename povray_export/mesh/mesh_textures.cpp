@@ -89,7 +89,7 @@ MeshTextures::MeshTextures(const Model& model, const Representation& representat
       shown_(cut.any ? cut.mesh : mesh_),
       job_(job),
       sky_(options.sky) {
-    find_slots(model, representation, options.uvs && !mesh_.uvs.empty());
+    find_slots(model, representation, options.uvs && !mesh_.uvs.empty(), options.few_textures);
     if (uses_uvs_)
         find_ranges();
     if (uses_uvs_ && options.texel)
@@ -132,7 +132,8 @@ void MeshTextures::check_job_sometimes(size_t i) const {
         job_.check();
 }
 
-void MeshTextures::find_slots(const Model& model, const Representation& representation, bool uvs) {
+void MeshTextures::find_slots(const Model& model, const Representation& representation, bool uvs,
+                              bool few_textures) {
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
         const uint16_t number = mesh_.slot(i);
         if (i > 0 && number == mesh_.slot(i - 1))
@@ -160,7 +161,8 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
         for (const Material* m = &slot.material; m != nullptr; m = m->other.get())
             slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
         slot.surface.uvs = uvs && textured(slot.material);
-        slot.even_sky = rays_go_on(slot.material, slot.surface.uvs);
+        slot.even_sky = few_textures || rays_go_on(slot.material, slot.surface.uvs);
+        slot.surface.layered = !few_textures;
         uses_uvs_ = uses_uvs_ || slot.surface.uvs;
         slot.bumped = slot.surface.uvs && bumpy(slot.material);
         slots_.push_back(std::move(slot));

@@ -63,7 +63,8 @@ private:
         size_t text = 0;             // where it is neither
     };
 
-    void find_slots(const Model& model, const Representation& representation, bool uvs);
+    void find_slots(const Model& model, const Representation& representation, bool uvs,
+                    bool few_textures);
     void find_ranges();
     void find_texels(double metres);
     void find_planes();

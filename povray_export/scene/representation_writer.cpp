@@ -34,6 +34,7 @@ std::string solid_text(const Model& model, const Representation& representation,
             material = model.materials[index];
         }
         TexturedSurface surface;
+        surface.layered = !options.few_textures;
         if (options.sky)
             surface.sky = share_of_grade(grade_of_share(options.sky->factor));
         out += '\n' + texture_text(material, surface, pictures);
@@ -182,6 +183,8 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
         hasher.text("most cut").value(*options.most_cut);
     if (options.sky)
         hasher.text("sky").value(options.sky->hash);
+    if (options.few_textures)
+        hasher.text("few textures");
     return hasher.result();
 }
 

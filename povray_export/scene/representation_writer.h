@@ -26,6 +26,10 @@ struct RepresentationOptions {
     /// The triangles, 2^most_cut, that its masks may become together; none: as many as pay.
     std::optional<int> most_cut = {};
     SkyLightPtr sky = {};  // the sky's light on it; null: all of it
+    /// True: lamps of groups light it, for which POV-Ray casts shadow rays anew for each texture that
+    /// a point has. So it has one where it can: without a layer of gloss, and with one share of the
+    /// sky a triangle.
+    bool few_textures = false;
 };
 
 /// The metres of a step of `outline`: two steps are twice as many.

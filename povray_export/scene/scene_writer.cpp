@@ -66,7 +66,10 @@ public:
           problems_(problems),
           job_(job),
           shading_(shading_of(options, view.pixel_error)),
-          includes_(model, options.folder) {}
+          includes_(model, options.folder) {
+        report_.lamps = static_cast<uint64_t>(
+            std::count_if(model_.lights.begin(), model_.lights.end(), light::is_lamp));
+    }
 
     ExportReport write() {
         const double start = thread_cpu_seconds();
@@ -182,7 +185,10 @@ private:
         const double pixel = pixel_of(node, representation, use.world);
         use.file = includes_.add(
             representation,
-            {.textures = textures, .uvs = options_.uvs, .sky = textures ? sky : nullptr},
+            {.textures = textures,
+             .uvs = options_.uvs,
+             .sky = textures ? sky : nullptr,
+             .few_textures = textures && plans_lights() && report_.lamps >= light::kManyLamps},
             std::max(view_.pixel_error, kUnseen) * pixel);
         uses_.push_back(use);
         if (includes_.at(use.file).pictured)
@@ -264,6 +270,7 @@ private:
         return !options.covered_only && !options.false_color;
     }
     bool lit() const { return lit(options_); }
+    bool plans_lights() const { return lit() && options_.light_error != 0.0; }
     const World& view_world() const { return model_.world; }
 
     /// The rays of a light's size. Where depths are blurred each of 37 samples of a pixel or more
@@ -294,10 +301,8 @@ private:
 
     /// The lights of everything that is drawn; its numbers are those of the uses that are drawn.
     light::LightPlan light_plan(const std::vector<Bound>& occluders) {
-        report_.lamps = static_cast<uint64_t>(
-            std::count_if(model_.lights.begin(), model_.lights.end(), light::is_lamp));
         report_.lights_each = static_cast<double>(report_.lamps);
-        if (!lit() || options_.light_error == 0.0)
+        if (!plans_lights())
             return {};
         std::vector<light::DrawnThing> drawn;
         drawn.reserve(occluders.size());

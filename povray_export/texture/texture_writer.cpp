@@ -304,7 +304,7 @@ private:
         const double scale = image ? even_scale(material.base_color_texture) : 1;
         const double painted = image ? std::max({paint.x, paint.y, paint.z}) : 1;
         const double brightness = scale * painted;
-        if ((image || layered) && !out.lamp && emission == glm::dvec3(0.0))
+        if (surface_.layered && (image || layered) && !out.lamp && emission == glm::dvec3(0.0))
             out.gloss = grazing_gloss(look);
         SurfaceLook below = look;
         if (out.gloss)

@@ -308,6 +308,38 @@ TEST_F(LightPlanTest, SunsLightEverythingAndNonsenseHurtsNothing) {
     EXPECT_NO_THROW(plan_lights(builder.model, {}, {}, view, {}, problems));
 }
 
+// POV-Ray casts shadow rays to lamps of a group anew for each texture of a point: a night took twice
+// as long with gloss in layers.
+TEST_F(LightPlanTest, WhatLampsOfGroupsLightHasNoLayers) {
+    Builder builder;
+    Material plastic;
+    plastic.roughness = 0.5;
+    const ObjectIndex box = builder.mesh(shapes::cube(), {builder.material(plastic)});
+    builder.place(box, box_at({0, 0, -0.2}, {24, 4, 0}), "floor");
+    for (size_t i = 0; i < kManyLamps; ++i) {
+        Light lamp;
+        lamp.kind = LightKind::Point;
+        lamp.power = 8;
+        lamp.position = {3.0 * static_cast<double>(i), 2, 2};
+        builder.model.lights.push_back(lamp);
+    }
+    builder.finish();
+    Problems problems;
+    const auto layers = [&](const std::string& name, std::optional<double> light_error) {
+        ExportOptions options = into(name);
+        options.light_error = light_error;
+        scenes::write(builder.model, from_above(1), options, problems);
+        size_t count = 0;
+        for (const auto& file : std::filesystem::directory_iterator(options.folder / "r"))
+            count += count_of(read_file(file.path()), "aoi");
+        return count;
+    };
+    EXPECT_EQ(layers("many", {}), 0u);
+    EXPECT_GT(layers("all", 0.0), 0u);  // of no group
+    builder.model.lights.pop_back();
+    EXPECT_GT(layers("few", {}), 0u);
+}
+
 TEST_F(LightPlanTest, ASunIsWrittenOnceAndAsFinelyAsItsShadowsNeed) {
     Builder builder;
     const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({0.8, 0.8, 0.8})});

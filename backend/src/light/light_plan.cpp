@@ -46,10 +46,6 @@ constexpr size_t kMostLamps = 20000;
 // The most lamps where none can be chosen by what they light.
 // Taste: with more of them, each an area with 81 rays or more, no picture is finished.
 constexpr size_t kMostUnchosen = 64;
-// Fewer lamps light everything, if they matter anywhere: no part of a picture can be dark because no
-// point lies on it, and nobody has to look for such parts, which takes most of a plan.
-// Taste: a larger number spares plans, for rays to more lamps at every point.
-constexpr size_t kManyLamps = 8;
 // The most distinct triangles.
 // Taste: each takes 130 bytes while lights are chosen.
 constexpr uint64_t kMostTriangles = 2'000'000;

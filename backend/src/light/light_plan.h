@@ -90,6 +90,11 @@ struct LightDemands {
 /// Taste: a larger number saves choosing lights where little is to be gained.
 inline constexpr double kFewShadowRays = 8;
 
+/// Fewer lamps light everything, if they matter anywhere: no part of a picture can be dark because
+/// no point lies on it, and nobody has to look for such parts, which takes most of a plan.
+/// Taste: a larger number spares plans, for rays to more lamps at every point.
+inline constexpr size_t kManyLamps = 8;
+
 /// Groups drawn things by the lights that light them, each with a grid of rays for that group.
 /// POV-Ray shades a group with its own lamps alone, while everything in between casts shadows.
 ///
