@@ -30,7 +30,7 @@ namespace {
 constexpr size_t kMostEach = 32;
 /// The same in a crowd, whose outlines are coarser than asked for.
 /// Taste: a larger value cuts branches more finely, for memory and parsing.
-constexpr size_t kMostInCrowd = 64;
+constexpr size_t kMostInCrowd = 192;
 /// The same where only what is clear is cut off, which saves most of the holes.
 /// Taste: a larger value leaves fewer of them.
 constexpr size_t kMostTrimmed = 24;
@@ -262,7 +262,7 @@ private:
         // The triangles of a crowd, each of which shows one picture at most: fences repeat theirs.
         // Taste: a larger value leaves the shapes of smaller bushes, for time.
         constexpr size_t kCrowd = 64;
-        slot.crowd = slot.triangles.size() >= kCrowd &&
+        slot.crowd = options_.coarse_crowds && slot.triangles.size() >= kCrowd &&
                      pictures <= static_cast<double>(slot.triangles.size());
         slot.most = std::clamp((slot.crowd ? kMostInCrowd : kMostEach) * slot.triangles.size(),
                                kMostOfFew, kMostOfMany);

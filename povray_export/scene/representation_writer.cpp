@@ -185,6 +185,8 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
         hasher.text("sky").value(options.sky->hash);
     if (options.few_textures)
         hasher.text("few textures");
+    if (!options.coarse_crowds)
+        hasher.text("fine crowds");
     return hasher.result();
 }
 

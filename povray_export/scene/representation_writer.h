@@ -25,6 +25,8 @@ struct RepresentationOptions {
     std::optional<int> outline = {};
     /// The triangles, 2^most_cut, that its masks may become together; none: as many as pay.
     std::optional<int> most_cut = {};
+    /// Outlines of crowds of leaves may be coarser than that, where they would have too many corners.
+    bool coarse_crowds = true;
     SkyLightPtr sky = {};  // the sky's light on it; null: all of it
     /// True: lamps of groups light it, for which POV-Ray casts shadow rays anew for each texture that
     /// a point has. So it has one where it can: without a layer of gloss, and with one share of the

@@ -187,6 +187,7 @@ private:
             representation,
             {.textures = textures,
              .uvs = options_.uvs,
+             .coarse_crowds = view_.pixel_error > 0,
              .sky = textures ? sky : nullptr,
              .few_textures = textures && plans_lights() && report_.lamps >= light::kManyLamps},
             std::max(view_.pixel_error, kUnseen) * pixel);
