@@ -189,6 +189,7 @@ int run_povray(const CommandArguments& arguments) {
                                        {"lights_each", exported.lights_each},
                                        {"unseen", exported.unseen},
                                        {"sky_copies", exported.sky_copies},
+                                       {"shadow_rays", exported.shadow_rays},
                                        {"cut_triangles", exported.cut_triangles}}});
     report.push_back({"povray", Fields{{"parse_cpu_s", rendered.parse_cpu_s},
                                        {"trace_cpu_s", rendered.trace_cpu_s},

@@ -54,6 +54,7 @@ struct ExportReport {
     uint64_t unseen = 0;       // objects that the camera does not see, but some other rays
     uint64_t lamps = 0;        // lights but suns
     double lights_each = 0;   // lamps, and lights for several, that light a seen point, in the mean
+    double shadow_rays = 0;   // to suns and lamps from a seen point, in the mean, about
     uint64_t sky_copies = 0;  // representations more, for copies under other parts of the sky
     uint64_t cut_triangles = 0;  // about what masks that are cut out become
     double cpu_s = 0;            // sum over all threads

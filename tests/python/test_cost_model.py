@@ -27,8 +27,8 @@ class Cost(unittest.TestCase):
     def test_a_million_triangles_are_read_as_was_measured(self):
         found = cost_model.predict(WORK)
         self.assertAlmostEqual(found.parse_cpu_s, 5.2)
-        # 1.65e-7 * 1e6^.2 * 1.5 each, 4 samples a pixel
-        self.assertAlmostEqual(found.trace_cpu_s, 230400 * 4 * 1.65e-7 * 1e6**0.2 * 1.5)
+        # 1.65e-7 * 1e6^.2 * 1.3 each, 4 samples a pixel
+        self.assertAlmostEqual(found.trace_cpu_s, 230400 * 4 * 1.65e-7 * 1e6**0.2 * 1.3)
         self.assertAlmostEqual(found.wall_s, 0.6 + 5.2 + found.trace_cpu_s / 2)
 
     def test_bounces_are_expected_to_take_what_they_gather(self):
@@ -44,6 +44,7 @@ class Cost(unittest.TestCase):
         blurred = cost_model.predict(replace(WORK, blurred=True)).trace_cpu_s
         self.assertAlmostEqual(blurred, sharp * 45 / 4)  # both at the usual antialiasing
         summary = SimpleNamespace(bytes=1, triangles=1)
+        exported = SimpleNamespace(cut_triangles=0, shadow_rays=1.0)
         quality = SimpleNamespace(bounces=0, bounce_rays=0, bounce_error=1.0)
         for camera, expected in (
             (CAMERA, True),
@@ -51,8 +52,23 @@ class Cost(unittest.TestCase):
             (replace(CAMERA, orthographic=True), False),
         ):
             view = SimpleNamespace(camera=camera, width=4, height=3, border=(0, 0, 0, 0))
-            work = cost_model.Work.of(summary, view, 1, Antialias.FINAL, 1, quality)
+            work = cost_model.Work.of(summary, view, exported, Antialias.FINAL, 1, quality)
             self.assertEqual(work.blurred, expected)
+
+    def test_leaves_and_shadow_rays_were_forgotten(self):
+        view = SimpleNamespace(camera=CAMERA, width=4, height=3, border=(0, 0, 0, 0))
+        quality = SimpleNamespace(bounces=0, bounce_rays=0, bounce_error=1.0)
+        summary = SimpleNamespace(bytes=1000, triangles=10)
+
+        def work(**more):
+            exported = SimpleNamespace(**{"cut_triangles": 0, "shadow_rays": 0.0, **more})
+            return cost_model.Work.of(summary, view, exported, Antialias.FINAL, 1, quality)
+
+        leaves = work(cut_triangles=90)
+        self.assertEqual(leaves.triangles, 100)
+        self.assertEqual(leaves.bytes, 1000 + int(90 * CostModel().triangle_bytes))
+        ratio = cost_model.predict(work(shadow_rays=10.0)).trace_cpu_s
+        self.assertAlmostEqual(ratio / cost_model.predict(work()).trace_cpu_s, 4.0)
 
     def test_the_same_picture_again_is_predicted_exactly(self):
         measured = SimpleNamespace(parse_cpu_s=9.0, trace_cpu_s=4.0, peak_bytes=400_000_000)

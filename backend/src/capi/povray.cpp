@@ -152,6 +152,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.lights_each = report.lights_each;
         out.unseen = report.unseen;
         out.sky_copies = report.sky_copies;
+        out.shadow_rays = report.shadow_rays;
         out.cut_triangles = report.cut_triangles;
         hand_out(out_report, out, "out_report");
     });

@@ -326,4 +326,16 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     return plan;
 }
 
+double mean_shadow_rays(const LightPlan& plan, std::span<const Light> lights, int rays) {
+    double sum = plan.empty() ? rays_to_all(lights, rays) : plan.shadow_rays;
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+        if (lights[i].kind != LightKind::Sun)
+            continue;
+        const auto sun = std::find_if(plan.suns.begin(), plan.suns.end(),
+                                      [&](const PlannedSun& one) { return one.light == i; });
+        sum += sun == plan.suns.end() ? 1 : sun_shadow_rays(sun->rays);
+    }
+    return sum;
+}
+
 }  // namespace lodestone::light

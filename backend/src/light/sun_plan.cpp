@@ -28,6 +28,13 @@ constexpr double kWider = 0.01;
 /// Taste: in ravenbridge_mansion 3 x 3 rays for 8 pixels look like 5 x 5; a larger value shows steps.
 constexpr double kStepsOfRay = 3;
 
+/// The rays that POV-Ray casts to a grid before it decides whether it needs the others.
+/// Law: its corners (adaptive 0).
+constexpr double kCorners = 4;
+/// The share of the others that it casts.
+/// Fitted: a garden of leaves casts 8 of 25 and 5 of 9.
+constexpr double kRefinedSun = 0.2;
+
 double narrowest(const GridDemands& demands) {
     return std::max(kLeastPenumbra, demands.shadow_error);
 }
@@ -50,6 +57,11 @@ int finest_sun_rays(const Light& sun, int rays) {
         return 1;
     const int most = sun.angle / 2 < kNarrowSun ? (kNarrowRays - 1) * (rays - 1) / 16 : rays - 1;
     return std::max(most, 2) + 1;
+}
+
+double sun_shadow_rays(int rays) {
+    const double all = static_cast<double>(rays) * rays;
+    return all <= kCorners ? all : kCorners + kRefinedSun * (all - kCorners);
 }
 
 std::vector<uint32_t> soft_suns(std::span<const Light> lights, const View& view,

@@ -14,6 +14,9 @@ namespace lodestone::light {
 /// the real one. `rays`: along the edge of a large lamp; 1: all shadows are sharp.
 int finest_sun_rays(const Light& sun, int rays);
 
+/// The shadow rays that a sun costs at a point in the mean.
+double sun_shadow_rays(int rays);
+
 /// The suns, by their numbers, whose penumbrae somewhere could be wider than the narrowest one that
 /// shows, by the bounds of all things (widest_penumbra()): the others need no look.
 std::vector<uint32_t> soft_suns(std::span<const Light> lights, const View& view,

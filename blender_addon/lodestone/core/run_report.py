@@ -70,6 +70,7 @@ def export_part(report: native.records.ExportReport) -> dict[str, Any]:
         "written": report.written,
         "cpu_s": report.cpu_s,
         "sky_copies": report.sky_copies,
+        "shadow_rays": report.shadow_rays,
         "cut_triangles": report.cut_triangles,
     }
 

@@ -3,9 +3,9 @@
 one before.
 
 POV-Ray reads its memory in a time that the library knows; a sample takes longer with the fifth
-root of the triangles and with each lamp (measured on one machine; cost.json beside the levels keeps
-by how much the last picture differed). Bounces gather light by rays at places as dense as their
-error asks for, and again from what these meet.
+root of the triangles and with each shadow ray (measured on one machine; cost.json beside the
+levels keeps by how much the last picture differed). Bounces gather light by rays at places as
+dense as their error asks for, and again from what these meet.
 """
 
 import json
@@ -21,7 +21,8 @@ from .quality_tree import Quality
 
 FILE = "cost.json"
 _SAMPLE_S = 1.65e-7
-_LAMP_SHARE = 0.5
+# A shadow ray beside a sample, in ravenbridge_mansion with suns of 1, 2 x 2, 3 x 3, 5 x 5 rays
+_SHADOW_SHARE = 0.3
 _GATHERED = 0.1  # places a pixel where light is gathered, at an error of 1
 _SAMPLES: dict[int, float] = {
     native.Antialias.OFF: 1.0,
@@ -74,7 +75,7 @@ class Work:
     pixels: int
     width: int
     height: int
-    lights: int
+    shadow_rays: float  # from a point of the picture
     antialias: int
     threads: int
     gathering: float = 0.0  # rays a pixel that gather light for Bounces
@@ -85,20 +86,22 @@ class Work:
         cls,
         summary: native.records.CutSummary,
         view: native.View,
-        lights: int,
+        exported: native.records.ExportReport,
         antialias: int,
         threads: int,
         quality: Quality,
     ) -> "Work":
-        """The work of a cut. `quality`: what shades it."""
+        """The work of a cut that was exported. `quality`: what shades it."""
         width, height = view.border[2:] if view.border[2] else (view.width, view.height)
         threads = threads or len(os.sched_getaffinity(0))
         whole = (view.width, view.height)
         drawn = width * height
-        sums = (summary.bytes, summary.triangles, drawn)
+        masks = exported.cut_triangles
+        grown = int(masks * native.CostModel().triangle_bytes)
+        sums = (summary.bytes + grown, summary.triangles + masks, drawn)
         rays = gathering(quality.bounces, quality.bounce_rays, quality.bounce_error)
         blurred = view.camera.aperture > 0.0 and not view.camera.orthographic
-        return cls(*sums, *whole, lights, antialias, threads, rays, blurred)
+        return cls(*sums, *whole, exported.shadow_rays, antialias, threads, rays, blurred)
 
 
 def gathering(bounces: int, rays: int, error: float) -> float:
@@ -114,7 +117,7 @@ def _parse_s_per_byte() -> float:
 
 def predict(work: Work, ratios: Ratios = Ratios()) -> Prediction:
     parse = work.bytes * _parse_s_per_byte() * ratios.parse
-    each = _SAMPLE_S * max(1, work.triangles) ** 0.2 * (1.0 + _LAMP_SHARE * work.lights)
+    each = _SAMPLE_S * max(1, work.triangles) ** 0.2 * (1.0 + _SHADOW_SHARE * work.shadow_rays)
     samples = (_BLURRED if work.blurred else _SAMPLES)[work.antialias] + work.gathering
     trace = work.pixels * samples * each * ratios.trace
     wall = _START_S + parse + trace / max(1, work.threads)

@@ -157,10 +157,9 @@ def _cut_and_export(
         shaded = replace(settings, pixel_error=cut.pixel_error)  # as roughly as it is drawn
         exported = native.povray_export(cut, str(folder), shaded.povray(), job)
     parts["export"] = run_report.export_part(exported)
-    lights = 0 if settings.false_color or settings.covered_only else model.light_count()
     quality = shaded.quality
     antialias = native.Antialias[quality.antialias]
-    work = cost_model.Work.of(summary, view, lights, antialias, settings.threads, quality)
+    work = cost_model.Work.of(summary, view, exported, antialias, settings.threads, quality)
     return parts, in_use, work
 
 
