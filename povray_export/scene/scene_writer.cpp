@@ -426,9 +426,8 @@ private:
         const light::LightPlan plan = light_plan(occluders);
         std::string lights;
         if (lit())
-            report_.shadow_rays =
-                static_cast<double>(sky_.lights.size()) +
-                light::mean_shadow_rays(plan, model_.lights, light_sampling().rays);
+            report_.shadow_rays = static_cast<double>(sky_.lights.size()) +
+                                  light::mean_shadow_rays(plan, model_.lights);
         const SceneLights scene_lights(view_, occluders, bound, times, shading_, light_sampling(),
                                        problems_);
         const std::map<light::GroupLight, std::string> names = scene_lights.declare(lights, plan);

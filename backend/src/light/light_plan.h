@@ -118,8 +118,8 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
                       std::span<const DrawnThing> drawn, const View& view,
                       const LightDemands& demands, Problems& problems, const Job& job = {});
 
-/// The shadow rays to all lights from a point of the view, in the mean, about; a sun that is not in
-/// the plan counts as sharp. `rays`: along the edge of a large lamp.
-double mean_shadow_rays(const LightPlan& plan, std::span<const Light> lights, int rays);
+/// The shadow rays that a renderer casts to all lights from a point of the view, in the mean, about;
+/// a sun that is not in the plan counts as sharp.
+double mean_shadow_rays(const LightPlan& plan, std::span<const Light> lights);
 
 }  // namespace lodestone::light
