@@ -30,7 +30,7 @@ namespace {
 constexpr size_t kMostEach = 32;
 /// The same in a crowd, whose outlines are coarser than asked for.
 /// Taste: a larger value cuts branches more finely, for memory and parsing.
-constexpr size_t kMostInCrowd = 192;
+constexpr size_t kMostInCrowd = 64;
 /// The same where only what is clear is cut off, which saves most of the holes.
 /// Taste: a larger value leaves fewer of them.
 constexpr size_t kMostTrimmed = 24;

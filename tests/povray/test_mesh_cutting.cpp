@@ -352,7 +352,7 @@ TEST(MeshCutting, ACrowdOfFineLeavesTookTenTimesAsLongThroughTheirTextures) {
         append(mesh, card(), {glm::dmat3(1.0), {0, 0, 0.1 * i}});
     const CutMesh found = cut(mesh, leaf(comb));
     EXPECT_EQ(found.opaque, std::vector<uint8_t>{1});
-    EXPECT_LT(found.mesh.triangles.size(), 192u * mesh.triangles.size());
+    EXPECT_LT(found.mesh.triangles.size(), 64u * mesh.triangles.size());
     EXPECT_NEAR(surface_area(found.mesh) / 300, comb.picture->mean.w, 0.1 * comb.picture->mean.w);
     // At full detail it is a texture, or as fine as it is seen.
     const CutMesh fine = cut(mesh, leaf(comb), {}, false);
