@@ -99,7 +99,8 @@ float decode_srgb_texel(float encoded) {
         return out;
     }();
     if (encoded >= 0 && encoded <= 1) {
-        const auto byte = static_cast<size_t>(encoded * 255.0f + 0.5f);
+        // Law: a byte comes back as its number or a little less.
+        const auto byte = static_cast<size_t>(encoded * 255.0f + 0.25f);
         if (static_cast<float>(byte) / 255.0f == encoded)
             return kOfByte[byte];
     }

@@ -316,6 +316,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     if (grid.points.empty())
         return {};
     std::vector<PlannedSun> planned;
+    planned.reserve(suns.size());
     for (const uint32_t sun : suns)
         planned.push_back(
             {sun, fit_sun_rays(scene, grid.points, model.lights[sun], view, demands.grids, job)});

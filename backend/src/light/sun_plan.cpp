@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "choose/criterion.h"
+#include "light/light_arrival.h"
 #include "light/penumbra.h"
 
 #include <glm/geometric.hpp>
