@@ -83,8 +83,7 @@ std::vector<LivePixel> pixels_of(LivePicture& picture) {
     while (const auto where = picture.take(false, room)) {
         for (int y = 0; y < where->height; ++y) {
             for (int x = 0; x < where->width; ++x)
-                out[static_cast<size_t>((where->top + y) * width + where->left + x)] =
-                    room[static_cast<size_t>(y * where->width + x)];
+                out.at((where->top + y) * width + where->left + x) = room.at(y * where->width + x);
         }
     }
     return out;

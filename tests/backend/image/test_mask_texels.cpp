@@ -92,7 +92,7 @@ TEST(MaskTexels, OnlyWhatIsSeenDecides) {
     EXPECT_FALSE(count(texels, everything(texels)).is_mask());
     for (int row = 0; row < seen.rows; ++row) {
         for (int column = seen.columns / 2; column < seen.columns; ++column)
-            seen.blocks[static_cast<size_t>(row * seen.columns + column)] = 1;
+            seen.blocks.at(row * seen.columns + column) = 1;
     }
     const MaskCount found = count(texels, seen);
     EXPECT_TRUE(found.is_mask());
