@@ -52,7 +52,8 @@ int png_color_type(const std::string& bytes) {
 }
 
 bool is_number(PigmentContent content) {
-    return content == PigmentContent::Number || content == PigmentContent::Alpha;
+    return content == PigmentContent::Number || content == PigmentContent::Alpha ||
+           content == PigmentContent::Height;
 }
 
 /// Whether POV-Ray may read the picture's own file: it shows the texture's very values.

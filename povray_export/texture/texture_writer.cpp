@@ -78,7 +78,7 @@ public:
             const GlossLayer gloss = gloss_layer(*surface.gloss, share(surface_.sky, 1));
             append_finish(layers, surface.finish, gloss.below, glm::dvec3(0.0));
             layers += "} texture{" + pictures_.declared_pigment(gloss.pigment) + ' ';
-            return pictures_.layered(layers + gloss.finish + '}');
+            return pictures_.layered(layers + normal(material) + gloss.finish + '}');
         }
         append_finish(layers, surface.finish, 1 / (1 - kVeil), glm::dvec3(0.0));
         Finish veil;

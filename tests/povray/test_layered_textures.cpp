@@ -25,6 +25,26 @@ TEST(PovrayLayers, AnOpaquePictureLetsPovrayStopShadowRays) {
     }
 }
 
+// Heights were read as colors: bumps of normal maps were steeper in the dark than in the bright.
+TEST(PovrayLayers, ANormalMapIsHeightsOnEachLayer) {
+    Material material;
+    material.specular = 0.5;
+    material.roughness = 0.5;
+    material.normal_texture = checker(ColorSpace::Linear);
+    TexturedSurface surface;
+    surface.uvs = surface.flat = true;
+    PictureWriter pictures;
+    std::string all = texture_text(material, surface, pictures);
+    all = pictures.declarations() + all;
+    EXPECT_EQ(all.find("gamma srgb"), std::string::npos) << all;
+    EXPECT_NE(all.find("gamma 1.0"), std::string::npos) << all;
+    // The gloss has the bumps of what is below it.
+    const size_t first = all.find("normal{");
+    ASSERT_NE(first, std::string::npos);
+    EXPECT_NE(all.find("normal{", first + 1), std::string::npos) << all;
+    EXPECT_NE(all.find("aoi"), std::string::npos) << all;
+}
+
 TEST(PovrayRenderLayers, LayersLookAsAveragesDo) {
     if (!scenes::have_povray())
         GTEST_SKIP();
