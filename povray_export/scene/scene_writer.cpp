@@ -333,12 +333,13 @@ private:
         return plan;
     }
 
-    /// Names lamps that make a picture slow.
+    /// Names lights that make a picture slow: lamps, and those that stand for several.
     void name_slow_lamps(const light::LightPlan& plan) {
         // The shadow rays to lamps from a point, on average.
         // Taste: with fewer, other things take most of the time.
-        constexpr double kMany = 100;
-        if (!(plan.shadow_rays >= kMany))
+        constexpr double kMany = 40;
+        const double rays = light::mean_lamp_rays(plan);
+        if (!(rays >= kMany))
             return;
         std::set<uint32_t> soft;
         for (const std::vector<light::GroupLight>& group : plan.groups) {
@@ -347,10 +348,12 @@ private:
                     soft.insert(one.light);
             }
         }
+        if (soft.empty())
+            return;
         problems_.push_back(
             {"", Severity::Info, "slow_lamps",
-             text(soft.size(), " lamps with soft shadows: from each point of the picture about ",
-                  std::lround(plan.shadow_rays),
+             text(soft.size(), " lights with soft shadows: from each point of the picture about ",
+                  std::lround(rays),
                   " shadow rays go to lamps; fewer Area Samples or larger Lights take less time")});
     }
 
@@ -439,11 +442,8 @@ private:
         append_camera(out, camera, options_.antialiasing, problems_);
         if (lit()) {
             for (uint32_t i = 0; i < model_.lights.size(); ++i) {
-                if (!plan.empty() && light::is_lamp(model_.lights[i]))
-                    continue;
-                const auto sun = std::find_if(plan.suns.begin(), plan.suns.end(),
-                                              [&](const auto& one) { return one.light == i; });
-                scene_lights.append(out, model_.lights[i], sun == plan.suns.end() ? 0 : sun->rays);
+                if (plan.empty() || !light::is_lamp(model_.lights[i]))
+                    scene_lights.append(out, model_.lights[i], plan.sun_rays(i));
             }
             if (!plan.empty()) {
                 out += "// Of ";

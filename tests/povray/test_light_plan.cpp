@@ -136,23 +136,38 @@ TEST_F(LightPlanTest, ALampThatMattersToNothingIsNotWritten) {
     EXPECT_EQ(count_of(read_file(options.folder / "scene.pov"), "fade_power"), 1u);
 }
 
-TEST_F(LightPlanTest, LampsThatMakeAPictureSlowAreNamed) {
+// Two lamps by day were said to take 106 rays from each point; POV-Ray casts three.
+TEST_F(LightPlanTest, LampsThatMakeAPictureSlowAreNamedAndOthersAreNot) {
     Builder builder;
-    add_rooms(builder);
-    for (Light& lamp : builder.model.lights)
+    const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({0.8, 0.8, 0.8})});
+    builder.place(box, box_at({0, 0, -0.2}, {4.0 * kRooms, 4, 0}), "floor");
+    for (int i = 0; i < 32; ++i) {
+        Light lamp;
+        lamp.kind = LightKind::Point;
+        lamp.power = 8;
         lamp.radius = 0.3;
+        lamp.position = {0.75 * i, 1.5 + i % 2, 6};
+        builder.model.lights.push_back(lamp);
+    }
+    builder.finish();
     Problems problems;
     ExportOptions options = into("slow");
-    scenes::write(builder.finish(), from_above(0), options, problems);
-    EXPECT_TRUE(problems.empty());  // without antialiasing shadows are sharp
     options.antialiasing = Antialiasing::Final;
     View view = from_above(0);
     view.width *= 4;
     view.height *= 4;
-    scenes::write(builder.model, view, options, problems);
+    const ExportReport slow = scenes::write(builder.model, view, options, problems);
+    EXPECT_GT(slow.shadow_rays, 40);
+    EXPECT_LE(slow.shadow_rays, 64);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].code, "slow_lamps");
-    EXPECT_NE(problems[0].message.find("24 lamps with soft shadows"), std::string::npos);
+    const std::string rays = std::to_string(std::lround(slow.shadow_rays)) + " shadow rays";
+    EXPECT_NE(problems[0].message.find(rays), std::string::npos) << problems[0].message;
+    problems.clear();
+    builder.model.lights.resize(2);
+    const ExportReport quick = scenes::write(builder.model, view, options, problems);
+    EXPECT_NEAR(quick.shadow_rays, 4, 0.1);
+    EXPECT_TRUE(problems.empty());
 }
 
 // One mesh of a ground got the grids of all lamps near it everywhere.

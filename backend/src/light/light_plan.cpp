@@ -46,6 +46,9 @@ constexpr size_t kMostLamps = 20000;
 // The most lamps where none can be chosen by what they light.
 // Taste: with more of them, each an area with 81 rays or more, no picture is finished.
 constexpr size_t kMostUnchosen = 64;
+// The rays that POV-Ray casts to a light that lights a point, where many points face away from it.
+// Fitted: 2.2 and 1.5 in night_street and night_tree of tests/bench/scenes, 1.5 in the street.
+constexpr double kRaysOfLamp = 2;
 // The most distinct triangles.
 // Taste: each takes 130 bytes while lights are chosen.
 constexpr uint64_t kMostTriangles = 2'000'000;
@@ -224,10 +227,11 @@ double rays_to_all(std::span<const Light> lights, int rays) {
     return sum;
 }
 
-/// The plan of lamps, by points that the view shows; others are added to them.
+/// The plan of lamps, by points that the view shows; others are added to them. `many`: they may be
+/// grouped.
 LightPlan plan_lamps(const LitScene& scene, LitGrid& grid, std::span<const Light> lights,
                      std::span<const DrawnThing> drawn, std::span<const Bound> bounds,
-                     const View& view, const LightDemands& demands, const Job& job) {
+                     const View& view, const LightDemands& demands, bool many, const Job& job) {
     std::vector<uint8_t> divisible;
     for (uint32_t i = 0; i < drawn.size(); ++i) {
         const RepresentationSummary& summary = drawn[i].representation->summary;
@@ -238,8 +242,6 @@ LightPlan plan_lamps(const LitScene& scene, LitGrid& grid, std::span<const Light
     const double pixel_error = demands.grids.pixel_error;
     const size_t even = grid.points.size();
     scene.add_other_light(demands, grid.points, job);
-    const bool many =
-        std::count_if(lights.begin(), lights.end(), is_lamp) >= static_cast<ptrdiff_t>(kManyLamps);
     std::vector<PointSighting> sightings;
     if (many) {
         const std::vector<uint8_t> cells =
@@ -278,6 +280,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
                       const LightDemands& demands, Problems& problems, const Job& job) {
     const auto lamps =
         static_cast<size_t>(std::count_if(model.lights.begin(), model.lights.end(), is_lamp));
+    const bool many = lamps >= kManyLamps;
     const bool plans_lamps =
         lamps > 0 && rays_to_all(model.lights, demands.grids.rays) >= kFewShadowRays;
     std::vector<Bound> bounds;
@@ -298,7 +301,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
         if (lamps > kMostUnchosen)
             return strongest("there are more of them, or of triangles, than can be looked through");
-        if (plans_lamps && lamps >= kManyLamps)
+        if (plans_lamps && many)
             problems.push_back({"", Severity::Info, "lights_as_they_are",
                                 text("all ", lamps,
                                      " lamps light everything: there are more of them, or of "
@@ -322,25 +325,28 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
             {sun, fit_sun_rays(scene, grid.points, model.lights[sun], view, demands.grids, job)});
     LightPlan plan;
     if (plans_lamps)
-        plan = plan_lamps(scene, grid, model.lights, drawn, bounds, view, demands, job);
+        plan = plan_lamps(scene, grid, model.lights, drawn, bounds, view, demands, many, job);
     plan.suns = std::move(planned);
     return plan;
 }
 
+int LightPlan::sun_rays(uint32_t light) const {
+    const auto sun = std::find_if(suns.begin(), suns.end(),
+                                  [&](const PlannedSun& one) { return one.light == light; });
+    return sun == suns.end() ? 0 : sun->rays;
+}
+
+double mean_lamp_rays(const LightPlan& plan) {
+    return kRaysOfLamp * plan.lights_each;
+}
+
 double mean_shadow_rays(const LightPlan& plan, std::span<const Light> lights) {
-    // The rays to a light that lights a point: most points see all of it, none of it, or face away.
-    // Fitted: 2.2 and 1.5 in night_street and night_tree of tests/bench/scenes, 1.5 in the street.
-    constexpr double kRaysOfLamp = 2;
-    double sum = plan.lights_each;
-    if (plan.empty())
-        sum = static_cast<double>(std::count_if(lights.begin(), lights.end(), is_lamp));
-    sum *= kRaysOfLamp;
+    double sum = mean_lamp_rays(plan);
     for (uint32_t i = 0; i < lights.size(); ++i) {
-        if (lights[i].kind != LightKind::Sun)
-            continue;
-        const auto sun = std::find_if(plan.suns.begin(), plan.suns.end(),
-                                      [&](const PlannedSun& one) { return one.light == i; });
-        sum += sun == plan.suns.end() ? 1 : sun_shadow_rays(sun->rays);
+        if (lights[i].kind == LightKind::Sun)
+            sum += sun_shadow_rays(std::max(1, plan.sun_rays(i)));
+        else if (plan.empty() && is_lamp(lights[i]))
+            sum += kRaysOfLamp;
     }
     return sum;
 }

@@ -66,13 +66,15 @@ struct LightPlan {
     /// In the order of the drawn things; all pieces of a thing together.
     std::vector<LitPiece> pieces;
     double lights_each = 0;  // the mean number of lights of a point that the view shows
-    double shadow_rays = 0;  // the mean number of shadow rays to them
+    double shadow_rays = 0;  // the mean number of shadow rays that they may cost, to compare plans
     /// The suns that are sampled otherwise than by the widest penumbra that could be. They light
     /// everything.
     std::vector<PlannedSun> suns;
 
     /// Whether nothing is known of lamps: all of them light everything.
     bool empty() const { return groups.empty(); }
+    /// The rays along an edge of a sun, by its number in the model; 0: it is not among `suns`.
+    int sun_rays(uint32_t light) const;
 };
 
 /// The demands that a plan meets, besides the view.
@@ -113,13 +115,15 @@ inline constexpr size_t kManyLamps = 8;
 /// Where rays cannot be cast, or there is too much to cast them at, the 64 lamps that are strongest
 /// at the camera light everything, and others nothing (a problem).
 ///
-/// Empty if lamps cost few rays, or they are few and cannot be chosen, ; it may have suns.
+/// Empty if lamps cost few rays, or are few and cannot be chosen; it may have suns all the same.
 LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
                       std::span<const DrawnThing> drawn, const View& view,
                       const LightDemands& demands, Problems& problems, const Job& job = {});
 
-/// The shadow rays that a renderer casts to all lights from a point of the view, in the mean, about;
-/// a sun that is not in the plan counts as sharp.
+/// The shadow rays that a renderer casts to the lamps of a plan from a point of the view, in the
+/// mean, about: fewer than `shadow_rays`, for from most points all of a lamp is seen, or none of it.
+double mean_lamp_rays(const LightPlan& plan);
+/// The same to all lights; a sun that is not in the plan counts as sharp.
 double mean_shadow_rays(const LightPlan& plan, std::span<const Light> lights);
 
 }  // namespace lodestone::light
