@@ -216,7 +216,7 @@ std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look) {
     return out;
 }
 
-void append_gloss(std::string& out, const GrazingGloss& gloss, double sky, double times) {
+GlossText gloss_alone(const GrazingGloss& gloss, double sky, double times) {
     const CoveredGloss plain{gloss.grow, {}};
     const CoveredGloss layer = covered_gloss(gloss);
     // The highlight of the layer follows another pigment: it is to grow as much at this angle.
@@ -224,14 +224,15 @@ void append_gloss(std::string& out, const GrazingGloss& gloss, double sky, doubl
     constexpr size_t kSame = kAngleCount - 2;
     const double growth =
         gloss.lamp_growth * (layer.white[kSame] - 1) / std::max(gloss.grow[kSame] - 1, 1e-3);
-    append_grazing_pigment(out, plain);
-    out += ' ';
-    append_grazing_finish(out, gloss, {gloss.sky * sky * times, times, growth});
+    GlossText out;
+    append_grazing_pigment(out.pigment, plain);
+    append_grazing_finish(out.finish, gloss, {gloss.sky * sky * times, times, growth});
+    return out;
 }
 
-GlossLayer gloss_layer(const GrazingGloss& gloss, double sky) {
+GlossText gloss_layer(const GrazingGloss& gloss, double sky) {
     const CoveredGloss layer = covered_gloss(gloss);
-    GlossLayer out;
+    GlossText out;
     append_grazing_pigment(out.pigment, layer);
     append_grazing_finish(out.finish, gloss,
                           {gloss.sky * sky / (1 - layer.through[0]), 1, gloss.lamp_growth});

@@ -29,16 +29,17 @@ struct GrazingGloss {
 /// none, and of what is so smooth that it mirrors its surroundings.
 std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look);
 
-/// Appends pigment{...} finish{...} of the gloss alone: white that grows with the angle of view, by
-/// `times` as strong. `sky`: the share of a uniform sky's light that arrives.
-void append_gloss(std::string& out, const GrazingGloss& gloss, double sky, double times);
-
-/// The text of the gloss as a layer over the matte surface, which shines through by angle.
-struct GlossLayer {
+/// The texts of gloss. Bumps of the surface belong between the two.
+struct GlossText {
     std::string pigment;  // pigment{...}
     std::string finish;   // finish{...}
     double below = 1;     // the factor on the finish of the surface below
 };
-GlossLayer gloss_layer(const GrazingGloss& gloss, double sky);
+
+/// The gloss alone, `times` as strong: white that grows with the angle of view. `sky`: the share of a
+/// uniform sky's light that arrives.
+GlossText gloss_alone(const GrazingGloss& gloss, double sky, double times);
+/// The gloss as a layer over the matte surface, which shines through by angle.
+GlossText gloss_layer(const GrazingGloss& gloss, double sky);
 
 }  // namespace lodestone::povray

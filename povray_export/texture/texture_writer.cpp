@@ -75,7 +75,7 @@ public:
             return "texture{" + solid(material, surface) + '}';
         std::string layers = "texture{" + surface.pigment;
         if (surface.gloss) {
-            const GlossLayer gloss = gloss_layer(*surface.gloss, share(surface_.sky, 1));
+            const GlossText gloss = gloss_layer(*surface.gloss, share(surface_.sky, 1));
             append_finish(layers, surface.finish, gloss.below, glm::dvec3(0.0));
             layers += "} texture{" + pictures_.declared_pigment(gloss.pigment) + ' ';
             return pictures_.layered(layers + normal(material) + gloss.finish + '}');
@@ -354,9 +354,8 @@ private:
         if (surface.lamp)
             entries.emplace_back(1, glow(material.emission_texture, parts));
         if (surface.gloss) {
-            Body text;
-            append_gloss(text, *surface.gloss, share(surface_.sky, 1), parts);
-            entries.emplace_back(1, std::move(text));
+            const GlossText gloss = gloss_alone(*surface.gloss, share(surface_.sky, 1), parts);
+            entries.emplace_back(1, gloss.pigment + ' ' + normal(material) + gloss.finish);
         } else if (surface.plain) {
             Finish rest;
             rest.ambient = surface.white;

@@ -109,7 +109,7 @@ TEST(GrazingGloss, AnOpaqueSurfaceStaysOpaqueToPovray) {
 // Sunlit cobbles were brown where Cycles shows them gray.
 TEST(PovrayRenderGloss, ASkyIsReflectedMoreByWhatIsSeenAtAGrazingAngle) {
     if (!scenes::have_povray())
-        GTEST_SKIP();
+        GTEST_SKIP() << "no POV-Ray";
     // Measured in Cycles, roughness 0.5.
     const std::pair<double, double> measured[] = {{0, kFacing}, {50, 0.051}, {60, 0.067},
                                                   {70, 0.095},  {75, 0.114}, {80, 0.137}};
@@ -129,7 +129,7 @@ TEST(PovrayRenderGloss, ASkyIsReflectedMoreByWhatIsSeenAtAGrazingAngle) {
 // Grass and sand of a high roughness were too dark far away.
 TEST(PovrayRenderGloss, ARoughSurfaceIsBrighterWhereItIsSeenFlat) {
     if (!scenes::have_povray())
-        GTEST_SKIP();
+        GTEST_SKIP() << "no POV-Ray";
     // Measured in Cycles, the answer of the matte part to a sky at 80 degrees, over that of facing.
     const std::pair<double, double> measured[] = {{0.4, 0.977}, {0.9, 1.188}};
     for (const auto& [roughness, value] : measured) {
@@ -146,7 +146,7 @@ TEST(PovrayRenderGloss, ARoughSurfaceIsBrighterWhereItIsSeenFlat) {
 
 TEST(PovrayRenderGloss, ALowSunShinesOnWhatIsSeenAgainstIt) {
     if (!scenes::have_povray())
-        GTEST_SKIP();
+        GTEST_SKIP() << "no POV-Ray";
     // Measured in Cycles, roughness 0.5: the mirrored sun at 45 degrees, and at 75 degrees.
     const auto mirrored = [](double degrees) {
         Light sun = scenes::sun(kPi);

@@ -43,11 +43,22 @@ TEST(PovrayLayers, ANormalMapIsHeightsOnEachLayer) {
     ASSERT_NE(first, std::string::npos);
     EXPECT_NE(all.find("normal{", first + 1), std::string::npos) << all;
     EXPECT_NE(all.find("aoi"), std::string::npos) << all;
+    // So has that over a picture of something half clear, which is no layer.
+    material.base_color_texture = checker();
+    material.alpha_mode = AlphaMode::Blend;
+    material.alpha = 0.5;
+    PictureWriter others;
+    const std::string half = texture_text(material, surface, others);
+    const size_t gloss = half.find("aoi");
+    ASSERT_NE(gloss, std::string::npos) << half;
+    const size_t bumps = half.find("normal{", gloss);
+    ASSERT_NE(bumps, std::string::npos) << half;
+    EXPECT_LT(bumps, half.find("finish{", gloss)) << half;
 }
 
 TEST(PovrayRenderLayers, LayersLookAsAveragesDo) {
     if (!scenes::have_povray())
-        GTEST_SKIP();
+        GTEST_SKIP() << "no POV-Ray";
     // A picture of one color beside that color, under sun and sky, glossy and glowing.
     Texture even;
     even.picture = scenes::picture(2, std::vector<glm::vec4>(4, {0.2, 0.4, 0.6, 1}));
