@@ -26,14 +26,4 @@ double clear_layers(const Mesh& mesh, const std::function<bool(size_t)>& counts)
     return surface > 0 ? 2 * area / surface : 0;
 }
 
-bool lets_through(const Material& material) {
-    for (const Material* part = &material; part != nullptr; part = part->other.get()) {
-        if (part->transmission > 0 ||
-            (part->alpha_mode != AlphaMode::Opaque &&
-             (part->alpha < 1 || part->alpha_texture || part->vertex_colors)))
-            return true;
-    }
-    return false;
-}
-
 }  // namespace lodestone::povray

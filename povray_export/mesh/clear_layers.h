@@ -18,7 +18,4 @@ inline constexpr double kMostLayers = 128;
 /// triangles that `counts`: all cards of a stack. 0 for none.
 double clear_layers(const Mesh& mesh, const std::function<bool(size_t)>& counts);
 
-/// Whether rays go on behind a surface of a material.
-bool lets_through(const Material& material);
-
 }  // namespace lodestone::povray

@@ -86,8 +86,8 @@ image::MaskNumbers squares(const image::MaskNumbers& from) {
     return to;
 }
 
-/// The texels of a picture made smaller that are not clear all over, with those around them: what is
-/// outlined there has nothing outside within a texel.
+/// The texels of a picture made smaller that are not clear all over, with those around them: what
+/// is outlined there has nothing outside within a texel.
 std::vector<float> surroundings(const image::MaskTexels& texels, int width, int height) {
     std::vector<uint8_t> shown(static_cast<size_t>(width) * static_cast<size_t>(height), 0);
     const auto wrapped = [](int at, int count) { return (at + count) % count; };

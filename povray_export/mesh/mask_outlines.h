@@ -43,8 +43,8 @@ public:
     /// Error(Cancelled).
     MaskOutlinePtr outline(const ShownMask& mask, const Job& job);
 
-    /// An outline around all of a texture that is not quite clear, coarse but never inside of it. Null
-    /// where it would have more corners or leaves out next to nothing. Throws as outline().
+    /// An outline around all of a texture that is not quite clear, coarse but never inside of it.
+    /// Null where it would have more corners or leaves out next to nothing. Throws as outline().
     MaskOutlinePtr hull(const Texture& texture, size_t most_corners, const Job& job);
 
     /// The most corners of an outline.

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "light/clear_materials.h"
 #include "povray_export/mesh/clear_layers.h"
 #include "povray_export/mesh/doubled_triangles.h"
 #include "povray_export/mesh/triangle_cutter.h"
@@ -175,7 +176,7 @@ private:
             return;
         layers_ = clear_layers(mesh_, [&](size_t i) {
             const Material* material = material_of(mesh_.slot(i));
-            return material != nullptr && lets_through(*material);
+            return material != nullptr && light::lets_light_through(*material);
         });
         for (auto at = slots_.begin(); at != slots_.end();) {
             auto doubles = take_doubles(mesh_, at->second.triangles);

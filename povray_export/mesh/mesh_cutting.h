@@ -20,12 +20,12 @@ struct CutMesh {
 };
 
 /// The mesh of a representation with the masks among its materials cut out: those whose alpha is a
-/// mask where the mesh shows it (MaskCount::is_mask()), those that are clipped by a cutoff, and blends
-/// of which a ray meets more than POV-Ray bears. Positions, normals, texture coordinates and colors
-/// of new corners are interpolated. Where they are no mask, painted clear, or would become more
-/// triangles than pay, slots keep their texture and lose what is clear around it. They stay as they are where they refract, are
-/// mixed, or show what lies beside a picture that ends there. Throws Error(InvalidArgument) for a
-/// material out of range, Error(BadFile), Error(Cancelled).
+/// mask where the mesh shows it (MaskCount::is_mask()), those that are clipped by a cutoff, and
+/// blends of which a ray meets more than POV-Ray bears. Positions, normals, texture coordinates and
+/// colors of new corners are interpolated. Where they are no mask, painted clear, or would become
+/// more triangles than pay, slots keep their texture and lose what is clear around it. They stay as
+/// they are where they refract, are mixed, or show what lies beside a picture that ends there.
+/// Throws Error(InvalidArgument) for a material out of range, Error(BadFile), Error(Cancelled).
 CutMesh cut_masks(const Model& model, const Representation& representation,
                   const RepresentationOptions& options, MaskOutlines& outlines, const Job& job);
 

@@ -34,10 +34,10 @@ class TriangleCutter {
 public:
     TriangleCutter(const MaskOutline& outline, const Texture& texture, const Job& job);
 
-    /// Cuts the triangle with these picture coordinates; the pieces turn as it does. One that shows a
-    /// line of the picture is cut across it, one that shows a point is there or not. The result is
-    /// valid until the next call. cost: O(most + triangles of the outline), for what takes longer is
-    /// TooMany. Throws Error(Cancelled).
+    /// Cuts the triangle with these picture coordinates; the pieces turn as it does. One that shows
+    /// a line of the picture is cut across it, one that shows a point is there or not. The result
+    /// is valid until the next call. cost: O(most + triangles of the outline), for what takes
+    /// longer is TooMany. Throws Error(Cancelled).
     const CutTriangle& cut(const glm::dvec2 (&at)[3], size_t most);
 
 private:

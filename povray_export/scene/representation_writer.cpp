@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/scene/representation_writer.h"
 
+#include "light/clear_materials.h"
 #include "povray_export/mesh/clear_layers.h"
 #include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/mesh/mesh_writer.h"
@@ -15,7 +16,7 @@ namespace {
 // The version of the text: raised whenever the text for the same input changes, for files are found
 // again by their name alone.
 // Law: part of every file's hash.
-constexpr uint32_t kWriterVersion = 9;
+constexpr uint32_t kWriterVersion = 10;
 
 /// The text of one solid; nothing for one without size.
 std::string solid_text(const Model& model, const Representation& representation, const Solid& solid,
@@ -116,7 +117,7 @@ private:
             const uint32_t material = representation_.materials[slot];
             const bool cut_out = slot < cut.opaque.size() && cut.opaque[slot] != 0;
             clear.push_back(!cut_out && material < model_.materials.size() &&
-                                    lets_through(model_.materials[material])
+                                    light::lets_light_through(model_.materials[material])
                                 ? 1
                                 : 0);
         }
