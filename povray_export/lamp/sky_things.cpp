@@ -9,8 +9,8 @@
 namespace lodestone::povray {
 namespace {
 
-// The triangles of copies, beyond kPlacementGrades of a mesh, that have shares of their own: a share
-// of those of all distinct meshes, and some more.
+// The triangles of copies, beyond kPlacementGrades of a mesh, that have shares of their own: a
+// share of those of all distinct meshes, and some more.
 // Taste: a larger value shades small things more truly, for a copy of the mesh each.
 constexpr double kCopiedShare = 0.25;
 constexpr double kCopiedTriangles = 5000;  // Taste: as kCopiedShare

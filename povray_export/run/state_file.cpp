@@ -17,7 +17,8 @@ constexpr size_t kPieceBytes = 65536;
 /// Taste: a larger value is slower to notice that the work is to stop.
 constexpr std::chrono::milliseconds kMostTime{5};
 /// The time that the rest of a file may take.
-/// Taste: a larger value waits longer for a file that goes on growing, or paints all again and again.
+/// Taste: a larger value waits longer for a file that goes on growing, or paints all again and
+/// again.
 constexpr std::chrono::seconds kMostRestTime{1};
 
 }  // namespace

@@ -47,10 +47,11 @@ public:
     /// Notes what a texel may cover where a file that is `pictured` is used, in metres of its own
     /// frame.
     void note_texel(size_t index, double texel);
-    /// Gives the files their names, once all are added and seen. Files that would only differ in how
-    /// masks are cut, while these are not or not differently, become one. Where masks of all files
-    /// would become more triangles than are left of a memory budget (in bytes; 0: none) of which
-    /// `used` are, those that become most are cut less. Files beside r/*.inc keep what is to be cut for the next export.
+    /// Gives the files their names, once all are added and seen. Files that would only differ in
+    /// how masks are cut, while these are not or not differently, become one. Where masks of all
+    /// files would become more triangles than are left of a memory budget (in bytes; 0: none) of
+    /// which `used` are, those that become most are cut less. Files beside r/*.inc keep what is to
+    /// be cut for the next export.
     void name(uint64_t budget, uint64_t used, const Job& job);
     /// Writes r/<16 hex>.inc and the pictures that are not there yet. Throws Error(Io),
     /// Error(Cancelled).

@@ -299,7 +299,7 @@ TEST(MeshCutting, AStackOfMoreBlendsThanPovrayBearsIsCut) {
 
 TEST(PovrayRenderMasks, AStackThatEndedPovrayIsDrawnOrItsNameTold) {
     if (!scenes::have_povray())
-        GTEST_SKIP();
+        GTEST_SKIP() << "no POV-Ray";
     // Masks, then glass that is clear everywhere, which nothing can cut.
     for (const bool mask : {true, false}) {
         Material material = leaf(disk());
@@ -409,7 +409,7 @@ TEST(MeshCutting, AnExportOutlinesAPictureOnce) {
 
 TEST(PovrayRenderMasks, CutOutCardsLookAsTheirTextures) {
     if (!scenes::have_povray())
-        GTEST_SKIP();
+        GTEST_SKIP() << "no POV-Ray";
     // A wavy flower, twice across, over a floor that takes its shadow; beside it the same through a
     // material that is not cut, since its alpha is mixed with itself.
     const Texture texture = alpha_of(128, [](double u, double v) {

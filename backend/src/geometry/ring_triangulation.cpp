@@ -70,8 +70,8 @@ public:
         return leftmost;
     }
 
-    /// Joins a hole, by its corner farthest left, to what is around it. Holes must come from left to
-    /// right.
+    /// Joins a hole, by its corner farthest left, to what is around it. Holes must come from left
+    /// to right.
     void join(Corner outer, Corner hole) {
         const Corner bridge = visible_from(outer, hole);
         if (bridge == kNoCorner)
@@ -89,8 +89,8 @@ public:
         list_[bridge2].previous = hole2;
     }
 
-    /// A corner that is no ear becomes one only when a neighbor of it is cut, so that each is looked
-    /// at about three times.
+    /// A corner that is no ear becomes one only when a neighbor of it is cut, so that each is
+    /// looked at about three times.
     void cut(Corner start) {
         // The rounds in which all corners are looked at again.
         // Law: none is needed but for rings that touch or cross.

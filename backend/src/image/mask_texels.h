@@ -47,8 +47,8 @@ struct MaskCount {
 
     /// Whether the alpha says what is there rather than how clear it is: at least 95 % are sure, or
     /// 80 % are, together with needles and blurred edges, and the alpha varies as much as a mask's.
-    /// Where next to all is clear, or next to none, it must be so in earnest: a film that is a little
-    /// clear all over is no mask.
+    /// Where next to all is clear, or next to none, it must be so in earnest: a film that is a
+    /// little clear all over is no mask.
     bool is_mask() const;
 };
 MaskCount count(const MaskTexels& texels, const SeenTexels& seen);

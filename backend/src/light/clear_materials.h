@@ -9,8 +9,8 @@ namespace lodestone::light {
 /// Whether light goes through some or all of a material.
 bool lets_light_through(const Material& material);
 
-/// The part of a material that rays to lights meet, with what it transmits as a part of its alpha: rays go
-/// through glass. It has no other pictures, which would be decoded.
+/// The part of a material that rays to lights meet, with what it transmits as a part of its alpha:
+/// rays go through glass. It has no other pictures, which would be decoded.
 Material clear_material(const Material& material);
 
 }  // namespace lodestone::light

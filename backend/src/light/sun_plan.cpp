@@ -26,7 +26,8 @@ constexpr int kNarrowRays = 5;
 constexpr double kWider = 0.01;
 
 /// The narrowest penumbrae that show, side by side in one, for which one ray stands.
-/// Taste: in ravenbridge_mansion 3 x 3 rays for 8 pixels look like 5 x 5; a larger value shows steps.
+/// Taste: in ravenbridge_mansion 3 x 3 rays for 8 pixels look like 5 x 5; a larger value shows
+/// steps.
 constexpr double kStepsOfRay = 3;
 
 /// The rays that POV-Ray casts to a grid before it decides whether it needs the others.
