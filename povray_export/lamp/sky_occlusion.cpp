@@ -18,13 +18,13 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 2;
+constexpr uint32_t kBakeVersion = 3;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
 constexpr int kFewestMeanRays = 16;        // Taste: as kMeanRays
 constexpr double kMostMeanRays = 300'000;  // Taste: rays of all placements together
-// Distinct triangles from which on corners have fewer rays each.
+// Distinct triangles from which on corners of the largest meshes have fewer rays each.
 // Taste: a larger value has less noise in large scenes, whose bake takes longer than their files.
 constexpr uint64_t kFullTriangles = 300'000;
 constexpr int kFewestCornerRays = 16;  // Taste: as kFullTriangles
@@ -44,13 +44,13 @@ public:
           options_(options),
           job_(job),
           bakes_(options.file),
-          all_(model, cut, options.most_triangles, job) {}
+          all_(model, cut, options.most_triangles, job),
+          rays_(options.rays, all_.distinct_triangles()) {}
 
     /// The reason why there is none; "" when lights() are found.
     std::string run() {
         if (!all_.too_much().empty())
             return "There is too much in the scene to find what hides the sky: " + all_.too_much();
-        rays_ = sky_rays(options_.rays, all_.triangles());
         find_keys();
         std::string without_rays;
         if (baked()) {
@@ -88,7 +88,8 @@ private:
     Hash key_of(const Representation& representation, const SkyThing* placed) const {
         Hasher hasher;
         const RepresentationSummary& summary = representation.summary;
-        hasher.value(kBakeVersion).value(rays_).value(summary.hash);
+        hasher.value(kBakeVersion).value(options_.rays).value(rays_.of(summary.cost.triangles));
+        hasher.value(summary.hash);
         hasher.value(summary.cost.triangles);
         if (placed != nullptr) {
             hasher.value(all_.scene()).value(summary.max_error).value(all_.splits_of(*placed));
@@ -243,13 +244,14 @@ private:
     };
 
     /// The rays of a bake, about: two triangles have about one corner.
-    static uint64_t work_of(const WantedShares& wanted, int rays) {
-        return 1 + static_cast<uint64_t>(rays) * wanted.representation->summary.cost.triangles / 2;
+    uint64_t work_of(const WantedShares& wanted) const {
+        const uint64_t triangles = wanted.representation->summary.cost.triangles;
+        return 1 + static_cast<uint64_t>(rays_.of(triangles)) * triangles / 2;
     }
     uint64_t work_of_bake() const {
         uint64_t work = 1;
         for (const auto& [key, wanted] : missing_)
-            work += work_of(*wanted, rays_);
+            work += work_of(*wanted);
         for (const WantedMeans* wanted : missing_means_)
             work += wanted->places.size() * static_cast<uint64_t>(mean_rays());
         return work;
@@ -260,8 +262,9 @@ private:
         parallel_for(missing_.size(), [&](size_t i) {
             job_.check();
             WantedShares& wanted = *missing_[i].second;
+            const int rays = rays_.of(wanted.representation->summary.cost.triangles);
             light::SkyRequest request{
-                surfaces.of(*wanted.representation), {}, nullptr, 0, rays_, 0};
+                surfaces.of(*wanted.representation), {}, nullptr, 0, rays, 0, options_.rays};
             if (wanted.placed != nullptr) {
                 request.world = wanted.placed->world;
                 request.around = &scene;
@@ -269,7 +272,7 @@ private:
                 request.splits = all_.splits_of(*wanted.placed);
             }
             wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
-            progress.add(work_of(wanted, rays_));
+            progress.add(work_of(wanted));
         });
     }
 
@@ -364,7 +367,7 @@ private:
     const Job& job_;
     light::SkyBakes bakes_;
     SkyThings all_;
-    int rays_ = 0;                   // that tell the share of a corner
+    CornerRays rays_;
     std::vector<uint32_t> numbers_;  // by leaf
     std::map<Hash, WantedShares> wanted_shares_;
     std::map<std::pair<Hash, bool>, WantedMeans> wanted_means_;  // with: a stand-in
@@ -378,11 +381,26 @@ private:
 
 }  // namespace
 
-int sky_rays(int rays, uint64_t triangles) {
-    const double part =
-        static_cast<double>(kFullTriangles) / static_cast<double>(std::max<uint64_t>(triangles, 1));
-    return std::max(std::min(rays, kFewestCornerRays),
-                    static_cast<int>(std::min(1.0, part) * rays));
+CornerRays::CornerRays(int rays, std::vector<uint64_t> triangles) : rays_(rays), most_(kInfinity) {
+    // The others have the rays that small meshes do not need.
+    std::sort(triangles.begin(), triangles.end());
+    double left = static_cast<double>(kFullTriangles) * rays;
+    for (size_t i = 0; i < triangles.size(); ++i) {
+        const double each = left / static_cast<double>(triangles.size() - i);
+        const double wanted = static_cast<double>(triangles[i]) * rays;
+        if (wanted > each) {
+            most_ = each;
+            return;
+        }
+        left -= wanted;
+    }
+}
+
+int CornerRays::of(uint64_t triangles) const {
+    int rays = rays_;
+    while (rays / 2 >= kFewestCornerRays && static_cast<double>(triangles) * rays > most_)
+        rays /= 2;  // so that a thing more changes the rays of few others
+    return rays;
 }
 
 double share_of_grade(uint8_t grade) {

@@ -32,9 +32,19 @@ struct SkyLight {
 };
 using SkyLightPtr = std::shared_ptr<const SkyLight>;
 
-/// The rays of each corner where a scene has so many distinct triangles: fewer in large ones, so
-/// that all together stay about as many.
-int sky_rays(int rays, uint64_t triangles);
+/// The rays of each corner of a mesh by its triangles. Where all distinct meshes of a scene have
+/// many triangles together, the largest ones have fewer rays, half of `rays` or a quarter ..., so
+/// that all rays stay about as many; small ones, which are the large faces, have all of them.
+class CornerRays {
+public:
+    /// `triangles`: of each distinct mesh of the scene, in any order.
+    CornerRays(int rays, std::vector<uint64_t> triangles);
+    int of(uint64_t triangles) const;
+
+private:
+    int rays_;
+    double most_;  // rays times triangles of one mesh
+};
 
 /// The choices for sky occlusion.
 struct SkyOcclusionOptions {

@@ -20,6 +20,7 @@ struct SkyRequest {
     double error = 0;   // metres, own frame: how far the surface may lie from its finest level
     int rays = 128;     // about so many tell the share of a corner
     size_t splits = 0;  // about how many triangles splits may add
+    int most_rays = 0;  // as `rays`, where triangles are larger than the mean; fewer: none more
 };
 
 /// The answers of the rays of one triangle.

@@ -111,13 +111,25 @@ private:
         }
     }
 
+    /// The rays of a corner of a triangle: as many more as this is larger than the mean, for noise
+    /// of large ones shows; about twice as many in all.
+    int rays_of_corner(size_t triangle) const {
+        const std::vector<double>& areas = request_.surface.areas;
+        const double mean = areas.empty() ? 0 : areas.back() / static_cast<double>(areas.size());
+        const double own = glm::length(area_vector(split_.mesh(), triangle));
+        if (request_.most_rays <= request_.rays || !(mean > 0))
+            return request_.rays;
+        return static_cast<int>(
+            limited(request_.rays * own / mean, request_.rays, request_.most_rays));
+    }
+
     /// The rays of a triangle: about as many as its corner with the fewest triangles needs.
     int rays_of(size_t triangle) const {
         const Triangle& t = split_.mesh().triangles[triangle];
         uint32_t fewest = ~uint32_t{0};
         for (int corner = 0; corner < 3; ++corner)
             fewest = std::min(fewest, around_[split_.welded()[t[corner]]]);
-        const int wanted = request_.rays / static_cast<int>(std::max(fewest, 1u));
+        const int wanted = rays_of_corner(triangle) / static_cast<int>(std::max(fewest, 1u));
         // Two are the fewest, for rays are cast in pairs.
         const int least = std::clamp(request_.rays / kFewestPart, 2, kFewestRays);
         return std::max(wanted, least);

@@ -367,3 +367,28 @@ TEST_F(SkyVisibility, SharesComeBackFromBytesAndDamagedOnesAreRefused) {
     EXPECT_FALSE(SkyShares::of_bytes("", 2));
     EXPECT_FALSE(split_for_sky(shapes::torus(64, 64), shares));
 }
+
+// Slabs of a pavement with many bolts were tinted, each by the few rays of a large mesh.
+TEST_F(SkyVisibility, LargeTrianglesOfFineMeshesHaveMoreRays) {
+    Mesh mesh = shapes::quad(4, 4);
+    for (int i = 0; i < 200; ++i)
+        append(mesh, shapes::quad(0.01F, 0.01F), moved({5 + 0.02 * i, 0, 0}));
+    const ObjectIndex pavement = builder.mesh(mesh);
+    const ObjectIndex wall = builder.mesh(shapes::box({-1, 0, 0}, {0, 4, 2}));
+    const SkyPlace place(*this, {{pavement, {}}, {wall, {}}});
+    const auto corners = [&](int rays, int most) {
+        const SkyRequest request{
+            place.surfaces.of(finest(pavement)), {}, &*place.scene, 0, rays, 0, most};
+        return sky_shares(request, {}).corners;
+    };
+    const std::vector<uint8_t> truth = corners(2048, 0);
+    const auto error = [&](const std::vector<uint8_t>& found) {
+        int sum = 0;
+        for (size_t i = 0; i < 6; ++i)  // those of the slab
+            sum += std::abs(found[i] - truth[i]);
+        return sum;
+    };
+    EXPECT_LT(2 * error(corners(16, 512)), error(corners(16, 0)));
+    EXPECT_EQ(corners(16, 16), corners(16, 0));
+    EXPECT_EQ(corners(128, 64), corners(128, 0));
+}
