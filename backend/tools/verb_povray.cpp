@@ -52,6 +52,10 @@ private:
     bool temporary_;
 };
 
+/// Pixels.
+/// Law: Blender's own default.
+constexpr double kFilterSize = 1.5;
+
 int32_t antialias_of(const CommandArguments& arguments) {
     static constexpr std::array<const char*, 3> kNames{"off", "final", "reference"};
     const std::string wanted = arguments.text("antialias").value_or("final");
@@ -122,6 +126,7 @@ int run_povray(const CommandArguments& arguments) {
     options.false_color = arguments.has("false-color") ? 1 : 0;
     options.threads = static_cast<int32_t>(arguments.number("threads", 0, 0, 4096));
     options.program = program ? program->c_str() : nullptr;
+    options.filter_size = arguments.number("filter-size", kFilterSize, 0, 1e6);
     if (arguments.has("light-error"))
         options.light_error = arguments.number("light-error", 0, 0, 1e6);
     options.bounces = static_cast<int32_t>(arguments.number("bounces", 0, 0, 8));

@@ -113,6 +113,8 @@ const std::vector<CommandVerb>& verbs() {
           {"look-at", "X,Y,Z", "what it looks at (default 0,0,0)"},
           {"angle-deg", "A", "horizontal field of view (default 50)"},
           {"antialias", "HOW", "off, final (default) or reference"},
+          {"filter-size", "PX",
+           "of the filter that blurs the picture as Blender's does (default 1.5; 0: none)"},
           {"light-error", "PX",
            "the same for lights alone (default: as pixel-error; 0 = all lamps as they are)"},
           {"sky-occlusion", "N",

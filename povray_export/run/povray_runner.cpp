@@ -4,6 +4,7 @@
 #include "base/files.h"
 #include "povray_export/run/child_process.h"
 #include "povray_export/run/live_picture.h"
+#include "povray_export/run/pixel_spreading.h"
 #include "povray_export/run/povray_messages.h"
 #include "povray_export/run/state_file.h"
 
@@ -366,6 +367,9 @@ RunReport render_scene(const RunOptions& options, const Job& job) {
     report.exit_code = child.state_lost ? (messages.finished ? 0 : 1) : WEXITSTATUS(child.state);
     if (report.exit_code != 0)
         fail(Status::PovrayFailed, "POV-Ray failed: ", messages.reason());
+    if (options.spread > 0 && std::filesystem::exists(temporary.picture, error))
+        spread_picture(temporary.picture, options.output, options.spread,
+                       options.folder / "scene.ini");
     report.picture = options.folder / name;
     if (rename(temporary.picture.c_str(), report.picture.c_str()) != 0) {
         const int number = errno;

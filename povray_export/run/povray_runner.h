@@ -27,6 +27,9 @@ struct RunOptions {
     int threads = 0;  // 0: all threads
     OutputFormat output = OutputFormat::Exr;
     std::string output_name = {};  // plain ASCII, in the folder; "": picture.exr, .png or .ppm
+    // The variance, in square pixels, by which the finished picture is blurred: what a pixel filter
+    // spreads more than samples within a pixel do (image::missing_spread()). 0: as drawn
+    double spread = 0;
     // A picture for somebody who looks while it is drawn; its part is what the scene's settings
     // draw. null: nobody looks.
     LivePicture* live = nullptr;

@@ -59,19 +59,6 @@ GatheringQuality gathering_of(Antialiasing antialiasing) {
     return {800, 0.4};
 }
 
-/// The distance between the samples of a pixel, in pixels. No image texture can show more.
-double sample_spacing(Antialiasing antialiasing, int depth) {
-    switch (antialiasing) {
-        case Antialiasing::Off:
-            return 1;
-        case Antialiasing::Final:
-            return 1.0 / depth;
-        case Antialiasing::Reference:
-            break;
-    }
-    return 0.25;
-}
-
 /// The number of samples, made 2^n + 1, for POV-Ray refines by halving.
 int halving(int samples) {
     if (samples <= 1)
@@ -91,7 +78,9 @@ Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixe
     out.area_samples = halving(shading.area_samples > 0 ? shading.area_samples : usual);
     out.sky_lights = shading.sky_lights == 0 ? sky_lights_of(antialiasing)
                                              : std::clamp(shading.sky_lights, 0, kMostSkyLights);
-    out.texture_error = std::max(shading.texture_error, sample_spacing(antialiasing, out.depth));
+    // No image texture can show more than samples do.
+    out.texture_error =
+        std::max(shading.texture_error, 1.0 / samples_along_side(out, antialiasing));
     const int usual_rays = antialiasing == Antialiasing::Off ? 0 : 128;
     out.sky_rays =
         shading.sky_rays == 0 ? usual_rays : std::clamp(shading.sky_rays, 0, kMostSkyRays);
@@ -104,6 +93,18 @@ Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixe
         shading.bounce_error > 0 ? std::clamp(shading.bounce_error, 0.01, 1.0) : gathering.error;
     out.reflection_error = std::clamp(shading.reflection_error, 1.0, 255.0);
     return out;
+}
+
+int samples_along_side(const Shading& filled_up, Antialiasing antialiasing) {
+    switch (antialiasing) {
+        case Antialiasing::Off:
+            return 1;
+        case Antialiasing::Final:
+            return filled_up.depth;
+        case Antialiasing::Reference:
+            break;
+    }
+    return 4;
 }
 
 }  // namespace lodestone::povray

@@ -33,4 +33,7 @@ struct Shading {
 /// The shading with every count and threshold filled in.
 Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixel_error);
 
+/// How many samples a pixel has along a side, where it has the most.
+int samples_along_side(const Shading& filled_up, Antialiasing antialiasing);
+
 }  // namespace lodestone::povray

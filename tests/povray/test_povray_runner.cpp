@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards running POV-Ray: its sentence when it fails, stopping it, and nothing left behind.
+#include "base/color.h"
+#include "image/image.h"
 #include "povray/povray_scenes.h"
 #include "povray_export/run/empty_scene.h"
 #include "povray_export/run/live_picture.h"
@@ -182,6 +184,11 @@ TEST(PovrayRunner, AProgramThatDiesOrMakesNoPictureIsAFailure) {
     EXPECT_FALSE(says(with("kill -FPE $$\n"), "bush"));
     EXPECT_TRUE(says(with("echo 'Parse Error: of mine' >&2; exit 1\n"), "of mine"));
     EXPECT_EQ(with("yes | head -c 3000000; exit 1\n").status, Status::PovrayFailed);
+    const std::string nonsense = script(folder, "echo nonsense > ${2#+O}\n");
+    const Error unreadable =
+        error_of([&] { render_scene({.folder = folder, .program = nonsense, .spread = 0.1}); });
+    EXPECT_EQ(unreadable.status, Status::PovrayFailed);
+    EXPECT_TRUE(says(unreadable, "picture cannot be read")) << unreadable.what();
     EXPECT_EQ(read_file(folder / "picture.exr"), "old");
     EXPECT_EQ(files_in(folder), 4u);  // scene.pov, scene.ini, program.sh, the old picture
 }
@@ -284,6 +291,37 @@ TEST(PovrayRunner, APictureAppearsWithItsReport) {
     options.output_name = "a.png";
     EXPECT_EQ(read_file(render_scene(options).picture).substr(1, 3), "PNG");
     EXPECT_EQ(files_in(folder), 5u);
+}
+
+TEST(PovrayRunner, AFinishedPictureIsSpreadByItsFilter) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    // A white half: the edge is between the columns 15 and 16.
+    const std::string half =
+        "global_settings{assumed_gamma 1} camera{orthographic location z*-1 look_at 0 right x*2 "
+        "up y*2} box{<0,-2,0><2,2,1> pigment{rgb 1} finish{ambient 1 emission 0 diffuse 0}}";
+    const auto folder = scene_with("spread", half);
+    RunOptions options{.folder = folder, .threads = 1, .spread = 0.1};
+    const image::Image exr = image::read(render_scene(options).picture);
+    const auto red = [](const image::Image& image, int x, int y) {
+        return image.pixels[4 * static_cast<size_t>(y * image.width + x)];
+    };
+    EXPECT_NEAR(red(exr, 14, 9), 0, 1e-3);
+    EXPECT_NEAR(red(exr, 15, 9), 0.05, 1e-3);
+    EXPECT_NEAR(red(exr, 16, 9), 0.95, 1e-3);
+    EXPECT_NEAR(red(exr, 17, 9), 1, 1e-3);
+    options.output = OutputFormat::Png;
+    const image::Image png = image::read(render_scene(options).picture);
+    EXPECT_NEAR(decode_srgb(red(png, 15, 9)), 0.05, 3e-3);
+    EXPECT_NEAR(decode_srgb(red(png, 16, 9)), 0.95, 1e-2);
+    // What lies outside of a border is black, and does not come in.
+    std::ofstream(folder / "scene.ini", std::ios::app)
+        << "Start_Column=17\nEnd_Column=20\nStart_Row=3\nEnd_Row=6\n";
+    options.output = OutputFormat::Exr;
+    const image::Image part = image::read(render_scene(options).picture);
+    EXPECT_NEAR(red(part, 15, 3), 0, 1e-3);
+    for (int x = 16; x < 20; ++x)
+        EXPECT_NEAR(red(part, x, 2), 1, 1e-3);
 }
 
 TEST(PovrayRunner, AFailingSceneGivesPovraysOwnSentence) {

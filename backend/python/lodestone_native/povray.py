@@ -29,6 +29,7 @@ _SHADING = (
     "bounce_rays",
     "bounce_error",
     "sky_rays",
+    "filter_size",
 )
 
 
@@ -54,6 +55,7 @@ class PovrayOptions:
     bounce_rays: int = 0
     bounce_error: float = 0.0
     sky_rays: int = 0
+    filter_size: float = 0.0
     bake_folder: str | None = None  # keeps what sky_rays found; None: the scene's folder
 
     def struct(self) -> structs.PovrayOptions:

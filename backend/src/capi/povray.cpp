@@ -5,6 +5,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/rays.h"
+#include "image/pixel_filter.h"
 #include "povray_export/run/empty_scene.h"
 #include "povray_export/run/live_picture.h"
 #include "povray_export/run/povray_runner.h"
@@ -71,6 +72,12 @@ povray::RunOptions run_options(const char* folder, const char* picture,
     const std::string ending = std::filesystem::path(picture).extension().string();
     if (ending != ".exr" && ending != ".png")
         fail(Status::InvalidArgument, "the picture '", picture, "' must end in .exr or .png");
+    if (options.false_color == 0 && options.covered_only == 0) {
+        const povray::Antialiasing antialiasing = antialiasing_of(options);
+        const povray::Shading shading = povray::filled_up(shading_of(options), antialiasing, 0);
+        out.spread = image::missing_spread(error_of(options.filter_size, "filter_size"),
+                                           povray::samples_along_side(shading, antialiasing));
+    }
     out.output = ending == ".exr" ? povray::OutputFormat::Exr : povray::OutputFormat::Png;
     return out;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image: pictures as floats; PNG, JPEG and OpenEXR are read, PNG is written.
+// Image: pictures as floats; PNG, JPEG and OpenEXR are read, PNG and OpenEXR are written.
 #pragma once
 
 #include <cstddef>
@@ -54,6 +54,10 @@ enum class PngEffort : uint8_t {
 };
 /// The bytes of such a PNG file. Throws Error(InvalidArgument).
 std::string png_bytes(const Image& image, PngEffort effort = PngEffort::Small);
+
+/// The bytes of an OpenEXR file of linear light with associated alpha, 16 bits a channel, RGBA;
+/// values beyond 65504 become that. Throws Error(InvalidArgument) for an image that is not linear.
+std::string exr_bytes(const Image& image);
 
 /// The image for a display: linear with associated alpha becomes sRGB with straight alpha, clamped
 /// to 0...1 (not a number: 0); another image stays as it is.

@@ -61,6 +61,7 @@ class BlenderPictureWork:
             covered_only=request.covered_only,
             threads=job.threads,
             program=job.program,
+            filter_size=scene.render.filter_size,
             bakes=str(store),
         )
         self.new_job = work.new_job

@@ -154,6 +154,7 @@ class _Run:
             budget=quality_settings.budget(settings),
             threads=self.scene.render.threads if self.scene.render.threads_mode == "FIXED" else 0,
             program=preferences.povray_program(),
+            filter_size=self.scene.render.filter_size,
             bakes=str(self.store),
         )
         self.problems = Problems()

@@ -17,7 +17,9 @@ class LODESTONE_RENDER_PT_film(EnginePanel, Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(context.scene.render, "film_transparent", text="Transparent")
+        render = context.scene.render
+        layout.prop(render, "film_transparent", text="Transparent")
+        layout.prop(render, "filter_size")
 
 
 class LODESTONE_RENDER_PT_performance(EnginePanel, Panel):

@@ -235,6 +235,27 @@ TEST(Image, ExrIsLinearWithItsOwnAlpha) {
     EXPECT_NE(complaint(exr("Z", window, window)).find("neither"), std::string::npos);
 }
 
+TEST(Image, ExrsThatWeWriteAreReadAgain) {
+    Image image;
+    image.width = 3;
+    image.height = 2;
+    image.linear = true;
+    for (int i = 0; i < 24; ++i)
+        image.pixels.push_back(static_cast<float>(i) / 8);
+    image.pixels[4] = 1e9f;
+    const Image again = read(exr_bytes(image), "written");
+    EXPECT_TRUE(again.linear);
+    EXPECT_EQ(again.width, 3);
+    EXPECT_EQ(again.height, 2);
+    image.pixels[4] = 65504;
+    EXPECT_EQ(again.pixels, image.pixels);
+    image.linear = false;
+    EXPECT_THROW(exr_bytes(image), Error);
+    image.linear = true;
+    image.pixels.pop_back();
+    EXPECT_THROW(exr_bytes(image), Error);
+}
+
 TEST(Image, ExrDataWindowIsPlacedInTheDisplayWindow) {
     const Image image =
         read(exr("RGBA", Imath::Box2i({-1, 2}, {1, 9}), Imath::Box2i({0, 1}, {3, 4})), "exr");

@@ -35,6 +35,7 @@ class Settings:
     covered_only: bool = False
     threads: int = 0
     program: str = ""  # POV-Ray; "": $LODESTONE_POVRAY, else the PATH
+    filter_size: float = 0.0  # pixels; Blender's Filter Size. 0: each pixel is what it covers
     bakes: str = ""  # the folder that keeps what was found of the sky's light; "": the scene's
     border: tuple[int, int, int, int] = (0, 0, 0, 0)  # left, top, width, height; width 0: all
 
@@ -64,6 +65,7 @@ class Settings:
             threads=self.threads,
             program=self.program,
             bake_folder=self.bakes or None,
+            filter_size=self.filter_size,
         )
 
     def view(self, camera: native.Camera, size: tuple[int, int]) -> native.View:
@@ -88,7 +90,7 @@ class Settings:
     def stamp(self) -> dict[str, str]:
         """The text in a picture's file about how it was made: the version, the Pixel Error, and a
         hash of all settings that show in the picture."""
-        own = (*self.quality, self.budget, self.false_color, self.covered_only)
+        own = (*self.quality, self.budget, self.false_color, self.covered_only, self.filter_size)
         shown = (*own, *bent_by(self.modifiers))
         return {
             "Lodestone": native.version(),
