@@ -16,8 +16,12 @@ class Inherited(unittest.TestCase):
         for error in (0.0, 0.5, 1.0):
             found = quality(error)
             self.assertEqual((found.antialias, found.antialias_threshold), ("FINAL", 0.1))
-            self.assertEqual((found.antialias_depth, found.trace_depth), (3, 5))
             self.assertEqual((found.area_samples, found.indirect), (17, 24))
+            self.assertEqual(found.trace_depth, 5)
+
+    def test_pixels_get_fewer_samples_from_a_pixel_on(self):
+        found = [quality(error).antialias_depth for error in (0.0, 0.5, 0.99, 1.0, 2.0)]
+        self.assertEqual(found, [3, 3, 3, 2, 2])
 
     def test_errors_are_the_one_number(self):
         for error in PRESETS:
