@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Builds, renders and exports .blend files without a window: a Blender of its own for each file.
+"""Works on .blend files without a window: a Blender of its own for each file.
 
-    /usr/bin/python3 batch.py build|render|export|compare FILE... [options]
+    /usr/bin/python3 batch.py VERB FILE... [options]        (--help lists the verbs)
 
 This half runs in plain Python and outlives whatever happens to Blender; the other half is
 batch_blender/. A crash, a signal and a missing report all become exit codes.

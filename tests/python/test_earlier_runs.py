@@ -5,13 +5,14 @@ import json
 import os
 import tempfile
 import unittest
-from dataclasses import replace
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
 import addon_path  # noqa: F401
 from lodestone.core.batch import earlier_runs, input_stamps, run_log
 from lodestone.core.batch.command_line import jobs, parser
 from lodestone.core.batch.earlier_runs import Earlier
+from lodestone.core.batch.file_jobs import BESIDE_PICTURES, OF_A_RUN, FileJob
 
 
 class Resume(unittest.TestCase):
@@ -143,6 +144,31 @@ class Resume(unittest.TestCase):
         self.assertEqual(len(self.found(replace(job, frames=(2, 9))).pictures), 1)
         Path(wanted[0][1].out).unlink()
         self.assertEqual(list(self.found(job).pictures), [wanted[1][1].out])
+
+    def test_pictures_made_with_another_value_of_a_new_option_were_taken_over(self):
+        @dataclass(frozen=True)
+        class LaterJob(FileJob):
+            gamma: float = 1.0
+
+        frame, picture = next(self.job.wanted())
+        plain, brighter = (
+            LaterJob(**{**asdict(self.job), "pictures": self.job.pictures, "gamma": gamma})
+            for gamma in (1.0, 2.2)
+        )
+        keys = [job.picture_key(frame, picture) for job in (plain, brighter)]
+        self.assertNotEqual(*keys)
+        self.assertNotEqual(plain.key(), brighter.key())
+
+    def test_only_what_is_named_changes_no_picture(self):
+        frame, picture = next(self.job.wanted())
+        known = {one.name for one in fields(FileJob)}
+        self.assertLessEqual({*OF_A_RUN, *BESIDE_PICTURES}, known)
+        for name in known:
+            other = replace(self.job, **{name: ()})  # a value that none of them has
+            if getattr(self.job, name) == ():
+                other = replace(self.job, **{name: ("a",)})
+            same = other.picture_key(frame, picture) == self.job.picture_key(frame, picture)
+            self.assertEqual(same, name in OF_A_RUN + BESIDE_PICTURES, name)
 
     def test_half_a_line_of_a_killed_run_harms_nothing(self):
         self.note()

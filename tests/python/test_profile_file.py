@@ -6,10 +6,13 @@ import io
 import json
 import tempfile
 import unittest
+from argparse import ArgumentParser
 from pathlib import Path
 
 import addon_path  # noqa: F401
+from lodestone.core.batch import profile_file
 from lodestone.core.batch.command_line import jobs, parse
+from lodestone.core.batch.verbs import VERBS
 
 
 class Profile(unittest.TestCase):
@@ -81,6 +84,15 @@ class Profile(unittest.TestCase):
     def test_what_belongs_to_one_run_is_refused(self):
         for key in ("out", "json", "log", "html", "resume", "profile", "files", "views"):
             self.assertIn("command line", self.refused({key: "x"}))
+
+    def test_each_option_serves_a_profile_or_belongs_to_one_run(self):
+        run = {"files", "help", "html", "json", "log", "out", "profile", "resume", "views"}
+        for verb in VERBS:
+            options = ArgumentParser()
+            verb.add_options(options)
+            of_one_run = {one.dest for one in options._actions if profile_file._of_one_run(one)}
+            self.assertLessEqual(of_one_run, run, verb.name)
+            self.assertLessEqual(run - {"views", "out"}, of_one_run, verb.name)
 
     def test_wrong_values_are_named_with_their_key(self):
         for key, value in (

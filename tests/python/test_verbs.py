@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Guards batch.py's verbs: what each refuses before work is done, and what it says it made."""
 
+import importlib
 import os
+import pkgutil
 import tempfile
 import unittest
+from argparse import ArgumentParser
 from pathlib import Path
 from types import SimpleNamespace
 
-import addon_path  # noqa: F401
+import addon_path
 from lodestone.core.batch.command_line import jobs, parser
 from lodestone.core.batch.file_jobs import PictureRequest
+from lodestone.core.batch import verbs
 from lodestone.core.batch.verbs import VERBS, verb_of
+from lodestone.core.batch.verbs.verb import Verb
 from lodestone.core.exit_codes import ExitCode, Failed
 
 
@@ -23,6 +28,15 @@ class Verbs(unittest.TestCase):
                 (job,) = jobs(parser().parse_args([verb.name, "a.blend", *more]))
                 self.assertEqual(job.verb, verb.name)
                 self.assertEqual(len(job.pictures), len(more) // 2)
+
+    def test_each_class_with_a_name_is_in_the_list(self):
+        def below(kind):
+            return {kind, *(one for child in kind.__subclasses__() for one in below(child))}
+
+        for module in pkgutil.iter_modules(verbs.__path__):
+            importlib.import_module(f"{verbs.__name__}.{module.name}")
+        named = {kind for kind in below(Verb) if "name" in vars(kind)}
+        self.assertEqual({type(verb) for verb in VERBS}, named)
 
     def test_only_build_builds_what_no_picture_asks_for(self):
         originals = [PictureRequest("a.png", pixel_error=0.0)]
@@ -62,6 +76,18 @@ class Verbs(unittest.TestCase):
         model = SimpleNamespace(totals=lambda: totals)
         for verb in VERBS:
             self.assertEqual(verb.about(model)["model"]["triangles_placed"], 24)
+
+
+class Pages(unittest.TestCase):
+    def test_the_page_names_each_verb_and_each_option(self):
+        page = (addon_path.ROOT / "blender_addon" / "docs" / "batch.md").read_text()
+        for verb in VERBS:
+            self.assertIn(f"`{verb.name}`", page)
+            options = ArgumentParser(add_help=False)
+            verb.add_options(options)
+            for action in options._actions:
+                for name in action.option_strings[:1]:  # the others are --no-...
+                    self.assertRegex(page, rf"{name}(?![\w-])", verb.name)
 
 
 class Outputs(unittest.TestCase):

@@ -40,7 +40,7 @@ def parser() -> argparse.ArgumentParser:
 def _parsers() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentParser]]:
     top = argparse.ArgumentParser(
         prog="batch.py",
-        description="Builds levels, renders, compares and exports .blend files without a window.",
+        description="Works on .blend files without a window.",
         epilog=_EPILOG,
     )
     subparsers = top.add_subparsers(dest="verb", required=True, metavar="VERB")

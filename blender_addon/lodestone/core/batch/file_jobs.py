@@ -11,6 +11,11 @@ from typing import Any
 
 from ..file_names import LONGEST, fitting
 
+# Fields of FileJob that change nothing of what is made
+OF_A_RUN = ("report", "threads", "program", "skip", "thumbnail", "supervisor", "keep")
+# Those that change nothing of one of its pictures either: the store gives the same levels
+BESIDE_PICTURES = ("pictures", "frames", "store", "strict")
+
 
 @dataclass(frozen=True)
 class PictureRequest:
@@ -46,7 +51,8 @@ class PictureRequest:
 @dataclass(frozen=True)
 class FileJob:
     """The work of one Blender with one input. `skip` names the `out` of pictures that are there
-    already; `report`, `thumbnail` and `supervisor` are those of one run."""
+    already; `report`, `thumbnail` and `supervisor` are those of one run. What OF_A_RUN does not
+    name makes --resume do the work again."""
 
     verb: str
     file: str
@@ -80,27 +86,30 @@ class FileJob:
 
     def key(self) -> str:
         """A text that is equal for jobs that make the same things from the same input."""
-        values = asdict(self)
-        for of_a_run in ("report", "threads", "program", "skip", "thumbnail", "supervisor", "keep"):
-            del values[of_a_run]
-        return _hash(values)
+        return _hash(self._without(OF_A_RUN))
 
     def picture_key(self, frame: int | None, picture: PictureRequest) -> str:
-        of_all = [self.version, self.verb, self.file, self.trust_scripts, self.keep_exr]
-        return _hash([*of_all, frame, asdict(picture)])
+        """The same for one picture, whatever else a job makes."""
+        return _hash([self._without(OF_A_RUN + BESIDE_PICTURES), frame, asdict(picture)])
+
+    def _without(self, names: tuple[str, ...]) -> dict[str, Any]:
+        return {name: value for name, value in asdict(self).items() if name not in names}
 
     def dump(self) -> str:
         return json.dumps(asdict(self))
 
     @classmethod
     def load(cls, text: str) -> "FileJob":
-        values: dict[str, Any] = json.loads(text)
-        for picture in values["pictures"]:
-            picture["size"] = tuple(picture["size"]) if picture["size"] else None
+        values = _tuples(json.loads(text))
         values["pictures"] = tuple(PictureRequest(**picture) for picture in values["pictures"])
-        values["frames"] = tuple(values["frames"]) if values["frames"] else None
-        values["skip"] = tuple(values["skip"])
         return cls(**values)
+
+
+def _tuples(value: Any) -> Any:
+    """The same with tuples, which JSON made lists of."""
+    if isinstance(value, dict):
+        return {key: _tuples(one) for key, one in value.items()}
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
 def _hash(value: Any) -> str:

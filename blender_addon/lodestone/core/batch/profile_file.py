@@ -9,8 +9,9 @@ from typing import Any
 
 from .views_file import size_text
 
-# These belong to one run and never to a profile
-ONE_RUN = ("files", "help", "html", "json", "log", "out", "profile", "resume", "views")
+# The metavars of what belongs to one run and never to a profile: its inputs and results. The
+# folder of levels (DIR) and a PROGRAM serve many runs.
+ONE_RUN = ("FILE", "PATH")
 
 
 def read_profile(
@@ -26,11 +27,13 @@ def read_profile(
         raise ValueError(f"--profile {path}: an object of options is expected")
     own = _options(verb)
     known: dict[str, argparse.Action] = {}
+    one_run: set[str] = set()
     for parser in all_verbs:
         known.update(_options(parser))
+        one_run.update(action.dest for action in parser._actions if _of_one_run(action))
     found = {}
     for key, value in values.items():
-        if key in ONE_RUN:
+        if key in one_run:
             raise ValueError(f"--profile {path}: {key} goes on the command line only")
         if key not in known:
             names = ", ".join(sorted(known))
@@ -42,7 +45,14 @@ def read_profile(
 
 
 def _options(parser: argparse.ArgumentParser) -> Mapping[str, argparse.Action]:
-    return {a.dest: a for a in parser._actions if a.option_strings and a.dest not in ONE_RUN}
+    return {action.dest: action for action in parser._actions if not _of_one_run(action)}
+
+
+def _of_one_run(action: argparse.Action) -> bool:
+    """Whether an option is for the command line alone. A switch that has no opposite is: a profile
+    could not be overruled."""
+    switch = action.nargs == 0 and not isinstance(action, argparse.BooleanOptionalAction)
+    return switch or action.metavar in ONE_RUN
 
 
 def _checked(where: str, action: argparse.Action, value: Any) -> Any:
