@@ -14,17 +14,23 @@ import blender_scenes as scenes
 # Pixels at scale 1, as measured on screen: the column of names beside values that can be animated
 # and those that cannot, words beside a checkbox, and a whole row
 NAME, NAME_PLAIN, CHECKBOX, ROW = 88, 96, 107, 265
-PANELS = (
-    "LODESTONE_RENDER_PT_levels",
-    "LODESTONE_RENDER_PT_levels_view",
-    "LODESTONE_RENDER_PT_unseen",
-    "LODESTONE_RENDER_PT_overrides",
-    "LODESTONE_RENDER_PT_sampling",
-    "LODESTONE_RENDER_PT_cost",
-    "LODESTONE_OBJECT_PT_levels",
-    "LODESTONE_OBJECT_PT_why",
-    "LODESTONE_EMPTY_PT_lens",
-)
+
+
+def panels():
+    """All of ours in Properties that draw something of their own, by name."""
+    named = [name for name in dir(bpy.types) if name.startswith("LODESTONE_") and "_PT_" in name]
+    kinds = {name: getattr(bpy.types, name) for name in named}
+    places = {name: (kind.bl_space_type, kind.bl_region_type) for name, kind in kinds.items()}
+    own = {name for name, kind in kinds.items() if kind.draw.__module__.startswith("lodestone.")}
+    return {name: kinds[name] for name in own if places[name] == ("PROPERTIES", "WINDOW")}
+
+
+def shown(kind):
+    """Whether a panel is drawn in the context of now."""
+    try:
+        return not hasattr(kind, "poll") or kind.poll(bpy.context)
+    except (AttributeError, TypeError):  # of a member that only the context of its tab has
+        return False
 
 
 class Layout:
@@ -77,6 +83,11 @@ class Layout:
 
     operator_menu_enum = operator
 
+    def __getattr__(self, name):
+        if not name.startswith("template_"):
+            raise AttributeError(name)
+        return lambda *_, **__: self.drawn.append(("", self.width))  # without words of ours
+
     def looks_active(self):
         return self.active and (self.parent is None or self.parent.looks_active())
 
@@ -92,31 +103,56 @@ class Labels(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
         bpy.ops.wm.save_as_mainfile(filepath=f"{self.folder.name}/labels.blend")
         self.scene = bpy.context.scene
+        self.seen = set()  # names of panels that were drawn
         blf.size(0, 11, 72)
 
-    def too_long(self, item):
+    def too_long(self, item, **members):
+        """The names that are cut off; members are those that the context of a tab has besides the
+        item."""
         bpy.context.view_layer.objects.active = item
         found = []
-        for name in PANELS:
-            kind = getattr(bpy.types, name)
-            if hasattr(kind, "poll") and not kind.poll(bpy.context):
-                continue
-            drawn = []
-            kind.draw(SimpleNamespace(layout=Layout(drawn)), bpy.context)
-            self.assertTrue(drawn, name)
-            found += [
-                (name, text, blf.dimensions(0, text)[0], width)
-                for text, width in drawn
-                if blf.dimensions(0, text)[0] > width
-            ]
+        with bpy.context.temp_override(object=item, active_object=item, **members):
+            for name, kind in panels().items():
+                if not shown(kind):
+                    continue
+                drawn = []
+                layout = Layout(drawn)
+                kind.draw(SimpleNamespace(layout=layout), bpy.context)
+                if drawn or layout.operators:
+                    self.seen.add(name)
+                found += [
+                    (name, text, blf.dimensions(0, text)[0], width)
+                    for text, width in drawn
+                    if blf.dimensions(0, text)[0] > width
+                ]
         return found
+
+    def tabs(self):
+        """An item and the members of its context for each tab that has panels of ours."""
+        material = scenes.material("Paint")
+        self.ball.data.materials.append(material)
+        yield self.ball, {"material": material, "material_slot": self.ball.material_slots[0]}
+        self.scene.world = bpy.data.worlds.new("World")
+        yield self.ball, {"world": self.scene.world}
+        yield self.scene.camera, {"camera": self.scene.camera.data}
+        for kind in ("POINT", "SUN", "SPOT", "AREA"):
+            data = bpy.data.lights.new(kind, kind)
+            yield scenes.link(bpy.data.objects.new(kind, data)), {"light": data}
+        yield self.ball, {"collection": scenes.collection("Kept", self.scene.collection)}
 
     def test_no_name_is_cut_off_at_the_usual_width(self):
         self.assertEqual(self.too_long(self.ball), [])
+        for item, members in self.tabs():
+            with self.subTest(item.name):
+                self.assertEqual(self.too_long(item, **members), [])
         bpy.context.view_layer.objects.active = self.lens
         bpy.ops.lodestone.detail_lens_enable()
         self.lens.empty_display_type = "PLAIN_AXES"
         self.assertEqual(self.too_long(self.lens), [])
+        # Each panel was drawn with something that it is about: a new one may need its own in tabs().
+        # One that is but the heading of others draws nothing itself.
+        headings = {getattr(kind, "bl_parent_id", "") for kind in panels().values()}
+        self.assertEqual(set(panels()) - self.seen - headings, set())
 
     def test_no_name_is_cut_off_whatever_is_set(self):
         bpy.ops.lodestone.update_levels()

@@ -93,6 +93,15 @@ class Controls(unittest.TestCase):
         bpy.ops.lodestone.levels_preset_add(name="Test of Lodestone", remove_name=True)
         self.assertFalse(path.exists())
 
+    def test_each_setting_of_a_scene_is_in_presets_or_none_of_quality(self):
+        from lodestone.panels import presets
+
+        not_of_quality = {"scope", "deforming", "build_on_render", "structure", "keep_scene_files"}
+        not_of_quality |= {"ignored", "linked"}
+        drawn = {control.key for control in NUMBERS}  # what is stored has a name of its own
+        settings = set(self.settings.bl_rna.properties.keys()) - {"rna_type", "name"}
+        self.assertEqual(settings - not_of_quality - drawn, set(presets._KEPT))
+
     def test_nonsense_stops_at_the_limits(self):
         for control in NUMBERS:
             for value in (-(2**30), 2**30):

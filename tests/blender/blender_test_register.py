@@ -2,6 +2,7 @@
 """Guards coming and going: enabling and disabling leaves nothing behind, also when it fails."""
 
 import importlib
+import pkgutil
 import unittest
 
 import addon_utils
@@ -38,6 +39,22 @@ class Register(unittest.TestCase):
             self.assertIn("Scene", traces())
             addon_utils.disable("lodestone", default_set=True)
             self.assertEqual(traces(), [])
+
+    def test_each_class_for_blender_is_registered(self):
+        blender_scenes.enable()
+        addon = importlib.import_module("lodestone")
+        kinds = (bpy.types.Panel, bpy.types.Operator, bpy.types.Menu, bpy.types.UIList)
+        kinds += (bpy.types.PropertyGroup,)
+        missing = []
+        for folder in ("operators", "panels", "properties", "viewport"):
+            part = importlib.import_module(f"{addon.__name__}.{folder}")
+            for file in pkgutil.iter_modules(part.__path__):
+                module = importlib.import_module(f"{part.__name__}.{file.name}")
+                for name, value in vars(module).items():
+                    ours = isinstance(value, type) and value.__module__ == module.__name__
+                    if ours and issubclass(value, kinds) and not value.is_registered:
+                        missing.append(f"{module.__name__}.{name}")
+        self.assertEqual(missing, [])
 
     def test_disabling_forgets_the_session(self):
         from lodestone.core.session.addon_session import addon_session
