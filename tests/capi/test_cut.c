@@ -34,15 +34,24 @@ struct longer {
     uint64_t more;
 };
 
-static void test_structs_are_as_long_as_needed_or_longer(void) {
+static void test_views_of_older_and_newer_callers(void) {
     lds_object cube;
     lds_model* model = two_cubes(&cube);
     const lds_camera camera = camera_before(30);
     lds_view view = view_of(&camera, 640, 360);
     lds_cut* cut = NULL;
-    view.struct_size = offsetof(lds_view, modifiers);
+    view.struct_size = 4;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_ERROR_INVALID_ARGUMENT && cut == NULL);
     EXPECT(strstr(lds_last_error_text(), "view.struct_size is") != NULL);
+    lds_modifiers refused = {.struct_size = sizeof refused, .criterion = 4};
+    view.modifiers = &refused;
+    view.struct_size = sizeof view;
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_ERROR_INVALID_ARGUMENT && cut == NULL);
+    view.struct_size = offsetof(lds_view, modifiers); /* the field is not read */
+    EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_OK && cut != NULL);
+    lds_cut_destroy(cut);
+    cut = NULL;
+    view.modifiers = NULL;
     view.struct_size = sizeof view + 16;
     view.camera = NULL;
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_ERROR_INVALID_ARGUMENT && cut == NULL);
@@ -52,9 +61,16 @@ static void test_structs_are_as_long_as_needed_or_longer(void) {
     struct longer longer;
     memset(&longer, 0, sizeof longer);
     longer.more = 77;
-    longer.summary.struct_size = sizeof longer.summary - 8;
-    EXPECT(lds_cut_get_summary(cut, &longer.summary) == LDS_ERROR_INVALID_ARGUMENT);
-    EXPECT(longer.summary.occurrences == 0);
+    for (uint32_t wrong = 0; wrong < 8; ++wrong) {
+        longer.summary.struct_size = wrong;
+        EXPECT(lds_cut_get_summary(cut, &longer.summary) == LDS_ERROR_INVALID_ARGUMENT);
+        EXPECT(longer.summary.occurrences == 0 && longer.summary.struct_size == wrong);
+    }
+    longer.summary.struct_size = offsetof(lds_cut_summary, bytes);
+    longer.summary.bytes = 7;
+    EXPECT(lds_cut_get_summary(cut, &longer.summary) == LDS_OK);
+    EXPECT(longer.summary.occurrences == 2 && longer.summary.triangles > 0);
+    EXPECT(longer.summary.bytes == 7); /* an older caller's summary has no such field */
     longer.summary.struct_size = sizeof longer;
     EXPECT(lds_cut_get_summary(cut, &longer.summary) == LDS_OK);
     EXPECT(longer.summary.occurrences == 2 && longer.more == 77);
@@ -122,7 +138,7 @@ static void test_nonsense_is_refused_by_name(void) {
     modifiers.criterion = 4;
     EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(lds_modifiers_default(&modifiers) == LDS_OK);
-    modifiers.struct_size = 8;
+    modifiers.struct_size = 4;
     EXPECT(status_of(model, &modifiers) == LDS_ERROR_INVALID_ARGUMENT);
     lds_model_destroy(model);
 }
@@ -401,7 +417,7 @@ static void test_a_cut_is_stale_once_its_groups_are_structured(void) {
 
 int main(void) {
     test_a_cut_is_stale_once_its_groups_are_structured();
-    test_structs_are_as_long_as_needed_or_longer();
+    test_views_of_older_and_newer_callers();
     test_occurrences_are_counted_by_kind();
     test_nonsense_is_refused_by_name();
     test_views_of_nonsense_are_refused_and_odd_ones_are_not();

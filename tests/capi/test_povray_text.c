@@ -47,7 +47,7 @@ static void test_two_cubes_share_one_file(const char* folder) {
     EXPECT(lds_povray_export(model, cut, &view, folder, &options, NULL, &report) == LDS_OK);
     EXPECT(report.lamps == 0 && report.lights_each == 0);
     lds_povray_options few = options;
-    few.struct_size = offsetof(lds_povray_options, antialias_threshold);
+    few.struct_size = 4;
     EXPECT(lds_povray_export(model, cut, &view, folder, &few, NULL, &report) ==
            LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(report.files == 3 && report.bytes > 0); /* scene.pov, scene.ini, the cube */

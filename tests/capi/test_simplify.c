@@ -82,7 +82,7 @@ static void test_simplifying_a_flat_grid_costs_no_shape(void) {
     lds_model_destroy(model);
 }
 
-static void test_short_options_are_refused(void) {
+static void test_fields_that_an_older_caller_lacks_count_as_0(void) {
     lds_object grid;
     lds_model* model = flat_grid(&grid);
     lds_simplify_options options = {.struct_size = sizeof options};
@@ -91,9 +91,15 @@ static void test_short_options_are_refused(void) {
     memset(&report, 0, sizeof report);
     report.struct_size = sizeof report;
     options.ratio = 0.25;
-    options.struct_size -= 8;
+    options.mode = 99;
     EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(report.triangles == 0);
+    options.struct_size = offsetof(lds_simplify_options, mode);
+    EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
+    EXPECT(report.triangles > 0);
+    EXPECT(lds_simplify_options_default(&options) == LDS_OK && options.mode == 99);
+    options.mode = 0;
+    options.ratio = 0.25;
     options.struct_size = sizeof options + 8;
     EXPECT(lds_model_simplify(model, &options, NULL, &report) == LDS_OK);
     EXPECT(report.triangles > 0 && report.triangles <= CELLS * CELLS / 2);
@@ -103,6 +109,6 @@ static void test_short_options_are_refused(void) {
 int main(void) {
     if (lds_rays_check() == LDS_OK)
         test_simplifying_a_flat_grid_costs_no_shape();
-    test_short_options_are_refused();
+    test_fields_that_an_older_caller_lacks_count_as_0();
     return finish();
 }

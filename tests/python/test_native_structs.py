@@ -7,12 +7,13 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+from dataclasses import fields
 from enum import EnumMeta
 from pathlib import Path
 
 import addon_path
 from lodestone_native import LodestoneError, Model, base, enums, functions, kind_counts, library
-from lodestone_native import structs
+from lodestone_native import structs, view
 from lodestone_native.job import Job
 
 HEADER = addon_path.ROOT / "backend" / "include" / "lodestone" / "lodestone.h"
@@ -73,6 +74,33 @@ class Structs(unittest.TestCase):
         for struct in bound_structs():
             for name, kind in struct._fields_:
                 self.assertFalse(issubclass(item(kind), base.Sized), f"{c_name(struct)}.{name}")
+
+    def test_structs_that_grow_end_without_padding(self):
+        """Else a new member could lie where an older caller's struct_size says that it has one."""
+        for struct in bound_structs():
+            if issubclass(struct, base.Sized):
+                last = struct._fields_[-1][0]
+                end = getattr(struct, last).offset + getattr(struct, last).size
+                self.assertEqual(end, ctypes.sizeof(struct), f"{c_name(struct)}.{last}")
+
+    def test_each_field_of_a_value_travels_in_its_struct(self):
+        """A field that only one of the two has would be 0 without a word."""
+        for value in (view.Camera, view.Light, view.Lens, view.ScreenLens, view.Modifiers,
+                      view.Budget, view.View):  # fmt: skip
+            named = {field for field, *_ in getattr(structs, value.__name__)._fields_}
+            ours = {one.name for one in fields(value)}
+            counts = {name for name in named - ours if name.endswith("_count")}
+            self.assertEqual(ours, named - counts - {"struct_size"}, value.__name__)
+
+    def test_each_modifier_is_handed_over(self):
+        given = view.Modifiers(depth=2.0, depth_focus=3.0, when_moving=True, when_dark=True,
+                               off_screen=enums.OffScreen.SHADOWS, ray_classes=enums.Rays.SHADOW,
+                               criterion=enums.Criterion.AREA)  # fmt: skip
+        struct = given.struct()
+        for one in fields(given):
+            if one.name not in ("lenses", "screen_lenses", "closing"):  # pointers
+                self.assertNotEqual(getattr(given, one.name), one.default, one.name)
+                self.assertEqual(getattr(struct, one.name), getattr(given, one.name), one.name)
 
     def test_struct_size_is_filled(self):
         self.assertEqual(structs.View().struct_size, ctypes.sizeof(structs.View))

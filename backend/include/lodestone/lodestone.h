@@ -7,10 +7,11 @@
    transforms  double[12], row-major 3x4, x -> M x + t
    status      LDS_OK (0) or the cause; the sentence that names the thing is lds_last_error_text().
                On failure outputs are untouched
-   structs     those that begin with struct_size may grow at their end in later versions, for
-               which fields that an older caller's lacks count as 0: set struct_size to sizeof the
-               struct before a call reads or fills it. They are passed by pointer alone, so none
-               lies in an array or in another struct. All other structs stay as they are.
+   structs     set struct_size to sizeof the struct before a call reads or fills it. Structs that
+               begin with it may grow at their end in later versions: fields that an older caller's
+               lacks count as 0 and are not filled, those that an older library lacks are left as
+               they are. They are passed by pointer alone, so none lies in an array or in another
+               struct; none ends with padding. All other structs stay as they are.
                lds_..._default fills in the usual values
    strings     UTF-8 in, any bytes accepted; strings handed out stay valid until the model or cut
                they came from changes or is destroyed. A null name counts as ""
@@ -37,7 +38,9 @@
 extern "C" {
 #endif
 
-/* Raised with every incompatible change; compare with lds_abi_version() before anything else. */
+/* Raised by the first version after which a program that was compiled before must not go on; compare
+   with lds_abi_version() before anything else. New functions, new enumerators and new members at
+   the end of a struct that begins with struct_size do not raise it. */
 #define LDS_ABI_VERSION 1
 
 typedef enum lds_status {
@@ -111,7 +114,8 @@ typedef enum lds_kind {
     LDS_KIND_COMPOSITE = 7, /* several boxes and ellipsoids */
     LDS_KIND_ASSEMBLY = 8   /* placements of other objects; drawn by these */
 } lds_kind;
-/* One more than the largest kind: the length of arrays that are indexed by lds_kind. */
+/* One more than the largest kind: the length of arrays that are indexed by lds_kind. Such an array
+   is the last member of its struct, which grows with it. */
 #define LDS_KIND_COUNT 9
 /* The word for a kind in files and reports, "mesh" and so on; "" for a number that is no kind. */
 LDS_API const char* lds_kind_name(int32_t kind);
@@ -140,6 +144,7 @@ typedef struct lds_object_info {
 /* An image. Exactly one of path, bytes and pixels is given. */
 typedef struct lds_picture {
     uint32_t struct_size;
+    int32_t linear;    /* 0: display-encoded (sRGB) color; 1: linear color, or data */
     const char* name;  /* the user's */
     const char* path;  /* a PNG, JPEG or OpenEXR file */
     const void* bytes; /* such a file's content */
@@ -148,7 +153,6 @@ typedef struct lds_picture {
                             order), numbers as the color space says; kept as an 8-bit PNG */
     int32_t width;
     int32_t height;
-    int32_t linear; /* 0: display-encoded (sRGB) color; 1: linear color, or data */
 } lds_picture;
 
 typedef enum lds_channel {
@@ -338,13 +342,13 @@ typedef struct lds_camera {
 
 typedef struct lds_world {
     uint32_t struct_size;
-    double color[3];            /* linear radiance, the same from everywhere */
-    int32_t transparent;        /* 1: the background has alpha 0 */
+    uint32_t environment; /* 1 + the index of an added picture, seen all around instead of color:
+                             equirectangular as Blender's, +Z up; 0: none */
+    double color[3];      /* linear radiance, the same from everywhere */
+    int32_t transparent;  /* 1: the background has alpha 0 */
     double environment_turn[9]; /* row-major: directions in the world -> in the picture; all 0: the
                                    same */
     double environment_strength[3]; /* times the picture's radiance */
-    uint32_t environment; /* 1 + the index of an added picture, seen all around instead of color:
-                             equirectangular as Blender's, +Z up; 0: none */
 } lds_world;
 
 LDS_API lds_status lds_model_create(lds_model** out_model);
@@ -402,6 +406,7 @@ typedef struct lds_bake_step {
 
 typedef struct lds_bake {
     uint32_t struct_size;
+    int32_t linear;              /* as in lds_picture: 0 keeps color display-encoded */
     const char* name;            /* the new picture's */
     const lds_bake_step* steps;  /* the last one's color is the texel's */
     size_t step_count;           /* at most 256 */
@@ -409,7 +414,6 @@ typedef struct lds_bake {
     size_t texture_count;
     int32_t width; /* 0: as the largest picture, at most 4096 a side */
     int32_t height;
-    int32_t linear; /* as in lds_picture: 0 keeps color display-encoded */
 } lds_bake;
 /* Adds a picture computed from others, texel by texel; opaque, cut to 0...1, an 8-bit PNG.
    out_index as lds_model_add_picture's. */
@@ -492,6 +496,7 @@ LDS_API lds_status lds_model_group_by_position(lds_model* model, lds_object grou
 
 typedef struct lds_structure_options {
     uint32_t struct_size;
+    int32_t threads;          /* 0 = all */
     uint32_t fewest_children; /* groups of at most this many are left alone; usual 64, least 2 */
     uint32_t most_children;   /* the most children of a group; at least 8, usual 64 */
     uint32_t orders;          /* random orders that are tried, 1 to 1024; usual 4. More: a slightly
@@ -501,7 +506,6 @@ typedef struct lds_structure_options {
     double group_cost;        /* the cost of a group, counted in children; usual 8. Larger: fewer
                                  and larger groups */
     uint64_t seed;
-    int32_t threads; /* 0 = all */
 } lds_structure_options;
 LDS_API lds_status lds_structure_options_default(lds_structure_options* options);
 
@@ -672,11 +676,11 @@ LDS_API lds_status lds_surface_inertia(const float* positions, size_t vertex_cou
 
 typedef struct lds_measure_options {
     uint32_t struct_size;
+    int32_t threads;       /* 0 = all */
     uint64_t rays;         /* fixed budget; usual 4096. More: less noise, linearly more time */
     double relative_error; /* > 0: cast until the visible area has this relative error (95 %
                               confidence), whatever `rays` says */
     uint64_t seed;
-    int32_t threads; /* 0 = all */
 } lds_measure_options;
 LDS_API lds_status lds_measure_options_default(lds_measure_options* options);
 
@@ -890,7 +894,8 @@ typedef struct lds_view {
     int32_t height;
     const lds_camera* camera;
     double pixel_error; /* T, usual 1; larger is coarser and cheaper; 0 = originals */
-    uint32_t kinds;     /* bit (1 << lds_kind) for each kind the consumer can draw; 0 = all */
+    uint32_t kinds;     /* bit (1 << lds_kind) for each kind the consumer can draw; 0 = all, also
+                           those of later versions */
     int32_t border[4];  /* the part of the image that is drawn: left, top, width, height in pixels;
                            width 0: all of it */
     const lds_modifiers* modifiers; /* null: none */
@@ -966,18 +971,20 @@ LDS_API const char* lds_cut_choice_path(lds_cut* cut, size_t position);
 typedef struct lds_reason {
     uint32_t struct_size;
     uint32_t lod;      /* the LOD number of the choice */
+    int32_t pinned;    /* 1: a decision about a placement forbids the next coarser level */
+    uint32_t unused;   /* 0 */
     double z;          /* metres from the eye to its bound, at least the near clip */
     double pixel;      /* size of a pixel at that distance, metres */
     double error;      /* metres in the object's frame */
     double stretch;    /* factor by which its placements enlarge it */
     double error_px;   /* error * stretch / pixel */
-    double factor;     /* product of the next eight, clamped to 1/64 ... 64; infinite where a lens
-                          hides part of it */
-    double importance; /* that of its placements; this and the next three refine */
+    double factor;     /* all that refines / all that coarsens, within 1/64 ... 64; infinite where
+                          a lens hides part of it */
+    double importance; /* that of its placements. The fields down to screen_lenses refine */
     double demand;     /* largest importance below it; infinite where a level limit lies below */
     double lenses;
     double screen_lenses;
-    double depth; /* this and the next three make it coarser */
+    double depth; /* the fields from here down to off_screen coarsen */
     double motion;
     double darkness;
     double off_screen;
@@ -988,7 +995,6 @@ typedef struct lds_reason {
     double coarser_error;    /* metres in that object's frame */
     double coarser_error_px; /* on screen */
     double coarser_factor;
-    int32_t pinned; /* 1: a decision about a placement forbids that level */
 } lds_reason;
 /* model: the one the cut was made from, with the same levels. */
 LDS_API lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t position,

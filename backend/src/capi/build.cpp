@@ -90,7 +90,7 @@ lds_status lds_model_build_estimate(lds_model* model, const char* store,
     return guard([&] {
         require(model, "model");
         require(store, "store");
-        const lds_build_options& given = checked(options, "options");
+        const lds_build_options given = checked(options, "options");
         const ThreadLimit limit(given.threads);
         hand_out(out_report,
                  report_of(hierarchy::estimate_build(model->model, segment::Store(store),
@@ -104,8 +104,8 @@ lds_status lds_model_build(lds_model* model, const char* store, const lds_build_
     return guard([&] {
         require(model, "model");
         require(store, "store");
-        checked(out_report, "out_report");
-        const lds_build_options& given = checked(options, "options");
+        known_bytes(out_report, "out_report");
+        const lds_build_options given = checked(options, "options");
         const hierarchy::BuildSettings settings = settings_of(*model, given);
         const ThreadLimit limit(given.threads);
         model->load_finest();

@@ -57,7 +57,7 @@ void list_new(lds_model& model, size_t first) {
 }
 
 group::StructureOptions structure_options(const lds_structure_options* given) {
-    const lds_structure_options& options = checked(given, "options");
+    const lds_structure_options options = checked(given, "options");
     if (options.fewest_children < 2)
         fail(Status::InvalidArgument, "fewest_children is ", options.fewest_children,
              "; 2 or more expected");
@@ -254,7 +254,7 @@ lds_status lds_model_structure(lds_model* model, const lds_object* groups, size_
                                lds_structure_report* out_report) {
     return guard([&] {
         require(model, "model");
-        checked(out_report, "out_report");
+        known_bytes(out_report, "out_report");
         const group::StructureOptions given = structure_options(options);
         const ThreadLimit limit(options->threads);
         std::vector<ObjectIndex> wanted;
@@ -292,8 +292,8 @@ lds_status lds_model_split_loose_parts(lds_model* model, const lds_object* objec
                                        lds_job* job, lds_loose_report* out_report) {
     return guard([&] {
         require(model, "model");
-        checked(out_report, "out_report");
-        const lds_loose_options& given = checked(options, "options");
+        known_bytes(out_report, "out_report");
+        const lds_loose_options given = checked(options, "options");
         if (given.fewest_triangles < 1 || given.most_clusters < 2)
             fail(Status::InvalidArgument, "clusters of ", given.fewest_triangles,
                  " triangles, at most ", given.most_clusters, "; 1 and 2 or more expected");

@@ -7,8 +7,11 @@
 #include "base/error.h"
 #include "base/job.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <new>
+#include <type_traits>
 
 namespace lodestone::capi {
 
@@ -48,23 +51,35 @@ inline void require(const void* pointer, const char* what) {
         fail(Status::InvalidArgument, what, " is null");
 }
 
-/// Throws unless a struct is at least as long as this library knows it (callers set struct_size).
-/// The version that makes a struct longer has to accept its older length here.
+/// The number of bytes of a struct that both the caller (by its struct_size) and this library know.
+/// Throws for a null pointer and for a length that no version of the struct has had.
 template <typename Struct>
-const Struct& checked(const Struct* value, const char* what) {
+size_t known_bytes(const Struct* value, const char* what) {
+    static_assert(std::is_trivially_copyable_v<Struct>);
     require(value, what);
-    if (value->struct_size < sizeof(Struct))
+    // Law: a struct holds its struct_size and another member, and no member ends between two words.
+    constexpr size_t kWord = sizeof(value->struct_size);
+    if (value->struct_size < 2 * kWord || value->struct_size % kWord != 0)
         fail(Status::InvalidArgument, what, ".struct_size is ", value->struct_size, "; ",
              sizeof(Struct), " expected");
-    return *value;
+    return std::min(size_t{value->struct_size}, sizeof(Struct));
 }
 
-/// Copies a result out, keeping the caller's struct_size; throws before anything is written.
+/// The caller's struct. Fields that an older, shorter one lacks are 0.
+template <typename Struct>
+Struct checked(const Struct* value, const char* what) {
+    Struct whole{};
+    std::memcpy(&whole, value, known_bytes(value, what));
+    return whole;
+}
+
+/// Copies a result out, as much of it as the caller's struct holds, and keeps its struct_size.
+/// Throws before anything is written.
 template <typename Struct>
 void hand_out(Struct* out, Struct value, const char* what) {
-    checked(out, what);
+    const size_t known = known_bytes(out, what);
     value.struct_size = out->struct_size;
-    *out = value;
+    std::memcpy(out, &value, known);
 }
 
 inline Job job_of(lds_job* job) {

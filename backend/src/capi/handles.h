@@ -84,7 +84,7 @@ QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* m
 PolygonMesh faces_of(const lds_faces_view* view);
 lds_model* new_model();
 /// The info of an object. Throws Error(InvalidArgument) for null and for one that lacks fields.
-const lds_object_info& object_info(const lds_object_info* info);
+lds_object_info object_info(const lds_object_info* info);
 /// Adds an object of that uid; throws when the uid is empty or taken.
 ObjectIndex add_object(lds_model& model, const lds_object_info* info, Representation finest);
 

@@ -188,7 +188,7 @@ lds_status lds_model_bake_picture(lds_model* model, const lds_bake* bake, lds_jo
     return guard([&] {
         require(model, "model");
         require(out_index, "out_index");
-        const lds_bake& given = checked(bake, "bake");
+        const lds_bake given = checked(bake, "bake");
         const std::string name = name_of(given.name);
         if (given.step_count > 0)
             require(given.steps, "bake.steps");
@@ -221,7 +221,7 @@ lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
     return guard([&] {
         require(model, "model");
         require(out_index, "out_index");
-        const lds_picture& given = checked(picture, "picture");
+        const lds_picture given = checked(picture, "picture");
         const std::string name = name_of(given.name);
         const PicturePtr made = image::make_picture(
             bytes_of(given, name), given.linear != 0 ? ColorSpace::Linear : ColorSpace::Srgb, name);

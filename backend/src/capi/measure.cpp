@@ -61,8 +61,8 @@ lds_status lds_model_measure(lds_model* model, lds_object object,
                              lds_attributes* out_attributes) {
     return guard([&] {
         require(model, "model");
-        checked(out_attributes, "out_attributes");
-        const lds_measure_options& given = checked(options, "options");
+        known_bytes(out_attributes, "out_attributes");
+        const lds_measure_options given = checked(options, "options");
         const ThreadLimit limit(given.threads);
         model->summarize();
         model->load_pictures();
@@ -112,8 +112,8 @@ lds_status lds_model_simplify(lds_model* model, const lds_simplify_options* opti
                               lds_simplify_report* out_report) {
     return guard([&] {
         require(model, "model");
-        checked(out_report, "out_report");
-        const lds_simplify_options& given = checked(options, "options");
+        known_bytes(out_report, "out_report");
+        const lds_simplify_options given = checked(options, "options");
         const ThreadLimit limit(given.threads);
         model->load_finest();
         model->summarize();  // its bound

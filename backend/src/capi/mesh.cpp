@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    const lds_uv_projection& given_;
+    lds_uv_projection given_;
     const float* positions_;
     const float* points_ = nullptr;
     float* out_;
@@ -69,7 +69,7 @@ std::span<const T> span_of(const T* values, size_t count) {
 }  // namespace
 
 PolygonMesh lodestone::capi::faces_of(const lds_faces_view* view) {
-    const lds_faces_view& given = checked(view, "faces");
+    const lds_faces_view given = checked(view, "faces");
     if (given.vertex_count > 0)
         require(given.positions, "faces.positions");
     if (given.corner_count > 0)

@@ -190,13 +190,13 @@ lds_status add_leaf(lds_model* model, const lds_object_info* info, const uint32_
 
 }  // namespace
 
-const lds_object_info& lodestone::capi::object_info(const lds_object_info* info) {
+lds_object_info lodestone::capi::object_info(const lds_object_info* info) {
     return checked(info, "info");
 }
 
 ObjectIndex lodestone::capi::add_object(lds_model& model, const lds_object_info* info,
                                         Representation finest) {
-    const lds_object_info& given = object_info(info);
+    const lds_object_info given = object_info(info);
     Object object;
     object.uid = name_of(given.uid);
     object.name = name_of(given.name);
@@ -266,7 +266,7 @@ lds_status lds_model_add_mesh(lds_model* model, const lds_object_info* info,
                               const lds_mesh_view* mesh, const uint32_t* materials,
                               size_t material_count, lds_object* out_object) {
     return add_leaf(model, info, materials, material_count, out_object, [&] {
-        const lds_mesh_view& view = checked(mesh, "mesh");
+        const lds_mesh_view view = checked(mesh, "mesh");
         Mesh made = mesh_of(view, material_count);
         std::shared_ptr<const PosedSurface> pose =
             pose_of(view, object_info(info), made, material_count);

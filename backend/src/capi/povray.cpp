@@ -119,8 +119,8 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         require(model, "model");
         require(cut, "cut");
         require(folder, "folder");
-        checked(out_report, "out_report");
-        const lds_povray_options& given = checked(options, "options");
+        known_bytes(out_report, "out_report");
+        const lds_povray_options given = checked(options, "options");
         require_current(*model, *cut);
         const ThreadLimit limit(given.threads);
         const Job progress = job_of(job);
@@ -171,7 +171,7 @@ lds_status lds_povray_run(const char* folder, const char* picture,
     return guard([&] {
         require(folder, "folder");
         require(picture, "picture");
-        checked(out_report, "out_report");
+        known_bytes(out_report, "out_report");
         run(run_options(folder, picture, checked(options, "options")), job, out_report);
     });
 }
@@ -183,8 +183,8 @@ lds_status lds_povray_run_live(const char* folder, const char* picture,
         require(folder, "folder");
         require(picture, "picture");
         require(live, "live");
-        checked(out_report, "out_report");
-        const lds_povray_options& given = checked(options, "options");
+        known_bytes(out_report, "out_report");
+        const lds_povray_options given = checked(options, "options");
         povray::RunOptions wanted = run_options(folder, picture, given);
         wanted.live = &live->picture;
         wanted.mosaic = given.bounces == 0;

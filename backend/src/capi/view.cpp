@@ -25,7 +25,7 @@ double between(double value, double least, double most, const char* what) {
 }
 
 Light light_of(const lds_light* light) {
-    const lds_light& given = checked(light, "light");
+    const lds_light given = checked(light, "light");
     Light out;
     out.name = name_of(given.name);
     if (given.kind < LDS_LIGHT_SUN || given.kind > LDS_LIGHT_AREA)
@@ -61,7 +61,7 @@ Light light_of(const lds_light* light) {
 namespace lodestone::capi {
 
 Camera camera_of(const lds_camera* camera) {
-    const lds_camera& given = checked(camera, "camera");
+    const lds_camera given = checked(camera, "camera");
     Camera out;
     out.name = name_of(given.name);
     out.orthographic = given.orthographic != 0;
@@ -81,7 +81,7 @@ Camera camera_of(const lds_camera* camera) {
 }
 
 View view_of(const lds_view* view, const lds_model* model) {
-    const lds_view& given = checked(view, "view");
+    const lds_view given = checked(view, "view");
     View out;
     out.camera = camera_of(given.camera);
     out.width = given.width;
@@ -124,7 +124,7 @@ lds_status lds_model_add_camera(lds_model* model, const lds_camera* camera) {
 lds_status lds_model_set_world(lds_model* model, const lds_world* world) {
     return guard([&] {
         require(model, "model");
-        const lds_world& given = checked(world, "world");
+        const lds_world given = checked(world, "world");
         World made;
         made.color = vector(given.color, "world.color");
         made.transparent = given.transparent != 0;
