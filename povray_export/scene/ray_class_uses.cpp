@@ -9,7 +9,7 @@ std::vector<OwnUse> own_uses(const Model& model, const choose::Cut& cut,
     std::vector<uint8_t> there(cut.nodes.size(), 0);  // classes of each node together
     for (const choose::RayCut& of : rays) {
         for (const choose::RayChoice& own : of.own) {
-            if (there.at(own.node) != 0 || (of.rays == kShadowRays && own.soft && !softened))
+            if (there.at(own.node) != 0 || (own.soft && !softened))
                 continue;
             there[own.node] = own.alone ? 1 : 0;
             const choose::CutNode& node = cut.nodes[own.node];
@@ -17,7 +17,7 @@ std::vector<OwnUse> own_uses(const Model& model, const choose::Cut& cut,
             if (!own.alone) {
                 use.in_place = of.rays;
                 use.hidden |= static_cast<RayMask>(kAllRays & ~of.rays);
-                use.textures = of.rays != kShadowRays;
+                use.textures = choose::rule_of(of.rays) != choose::RayRule::Shadow;
             }
             if (own.scale != 1) {
                 const Primitive& solid =

@@ -5,12 +5,13 @@ the command line, profiles and views ask for."""
 import contextlib
 import io
 import json
+import re
 import tempfile
 import unittest
 from pathlib import Path
 from types import SimpleNamespace
 
-import addon_path  # noqa: F401 - makes the add-on importable
+import addon_path  # makes the add-on importable
 from lodestone.core.batch import command_line
 from lodestone.core.batch.file_jobs import FileJob
 from lodestone.core.picture import unseen_detail, why_sentences
@@ -37,6 +38,17 @@ class Words(unittest.TestCase):
         for text in ("", "shadows", "shadow,", "shadow;reflection", "none,shadow", "\0", "9" * 999):
             with self.assertRaises(ValueError, msg=text):
                 unseen_detail.rays_of(text)
+
+    def test_pages_and_the_command_know_each_class(self):
+        page = (addon_path.ROOT / "blender_addon" / "docs" / "batch.md").read_text()
+        (row,) = (line for line in page.splitlines() if line.startswith("| `--ray-classes"))
+        for one in unseen_detail.CLASSES:
+            self.assertIn(f"`{one.word}`", row)
+        command = (addon_path.ROOT / "backend" / "tools" / "choosing.cpp").read_text()
+        (told,) = re.findall(r'"([\w, ]+), with commas between"', command)
+        self.assertEqual(set(told.split(", ")), {one.name.lower() for one in Rays})
+        for one in Rays:
+            self.assertIn(f'std::pair{{"{one.name.lower()}", LDS_RAYS_{one.name}}}', command)
 
     def test_tooltips_are_sentences_without_a_full_stop(self):
         for one in unseen_detail.CLASSES:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "choose/ray_class/ray_cut.h"
 
+#include "base/error.h"
 #include "choose/criterion.h"
 #include "choose/ray_class/bound_tree.h"
 
@@ -32,6 +33,19 @@ bool opaque(const Model& model, const Representation& representation) {
             }
             return true;
         });
+}
+
+/// Whether a rule is about images. Otherwise it is about shadows.
+bool asks_for_images(RayRule rule) {
+    switch (rule) {
+        case RayRule::Mirror:
+            return true;
+        case RayRule::Shadow:
+            return false;
+        case RayRule::None:
+            break;
+    }
+    fail(Status::Internal, "a class of rays without a rule meets nothing coarser");
 }
 
 /// The bounds of the nodes, in the world: of the level that is drawn; of an opened node, everything
@@ -80,9 +94,12 @@ public:
 
 private:
     static View plain(View view) {
-        view.modifiers.depth = 1;
-        view.modifiers.when_moving = view.modifiers.when_dark = false;
-        view.modifiers.off_screen = OffScreen::Full;
+        // A new modifier breaks this line, so that its author switches off here what coarsens.
+        auto& [criterion, lenses, screen_lenses, depth, focus, when_moving, closing, when_dark,
+               off_screen, ray_classes] = view.modifiers;
+        depth = 1;
+        when_moving = when_dark = false;
+        off_screen = OffScreen::Full;
         return view;
     }
 
@@ -125,6 +142,7 @@ public:
         RayCut out;
         out.rays = rays;
         out.states.reserve(cut_.chosen.size());
+        const RayRule rule = rule_of(rays);
         NodeRefinement refinement(model_, view_, cut_);
         replaced_.assign(cut_.nodes.size(), 0);
         for (uint32_t i = 0; i < cut_.nodes.size(); ++i) {
@@ -141,12 +159,12 @@ public:
             RayState state = RayState::Need;
             if ((node.hidden & rays) != 0)
                 state = RayState::Off;
-            else if (rays != kRadiosityRays && unseen(i, factors, out))
+            else if (rule != RayRule::None && unseen(i, factors, out))
                 state = RayState::Own;
-            else if (rays == kShadowRays && !lit_)
+            else if (rule == RayRule::Shadow && !lit_)
                 state = RayState::Need;  // there are no shadows
-            else if (!node.opened && rays != kRadiosityRays)
-                state = seen(i, rays, factors, out);
+            else if (!node.opened && rule != RayRule::None)
+                state = seen(i, rule, factors, out);
             replaced_[i] = state == RayState::Own ? 1 : 0;
             if (!node.opened)
                 out.states.push_back(state);
@@ -199,7 +217,7 @@ private:
     }
 
     /// Finds a box or ellipsoid inside or around a thing that the picture shows.
-    RayState seen(uint32_t index, RayMask rays, const DetailFactors& factors, RayCut& out) {
+    RayState seen(uint32_t index, RayRule rule, const DetailFactors& factors, RayCut& out) {
         const CutNode& node = cut_.nodes[index];
         const Representation& drawn = level(node, node.lod);
         const Object& object = model_.objects[node.object];
@@ -213,7 +231,7 @@ private:
             return RayState::Need;
         if (drawn.summary.kind != Kind::Mesh || !opaque(model_, drawn))
             return RayState::Shape;
-        const bool mirrored = rays == kReflectionRays;
+        const bool mirrored = asks_for_images(rule);
         if (mirrored && !need_.mirrored())
             return RayState::Need;
         const auto images = [&](uint32_t lod) {

@@ -5,7 +5,29 @@
 
 #include "choose/ray_class/ray_need.h"
 
+#include <array>
+
 namespace lodestone::choose {
+
+/// The rule by which a class of rays may meet something coarser than the camera's rays do.
+enum class RayRule : uint8_t {
+    None,    // it meets what they meet
+    Mirror,  // its images must look alike
+    Shadow,  // its shadows must look alike; soft ones hide more
+};
+/// The rule of each of kRayClasses: camera, reflection, shadow, radiosity.
+inline constexpr std::array kRayRules{RayRule::None, RayRule::Mirror, RayRule::Shadow,
+                                      RayRule::None};
+static_assert(kRayRules.size() == kRayClasses.size(), "each class has a rule, or None");
+
+/// The rule of one class.
+constexpr RayRule rule_of(RayMask rays) {
+    for (size_t i = 0; i < kRayClasses.size(); ++i) {
+        if (kRayClasses[i] == rays)
+            return kRayRules[i];
+    }
+    return RayRule::None;
+}
 
 /// Why a class of rays meets a representation in place of what the camera sees.
 enum class RayState : uint8_t {
@@ -43,7 +65,7 @@ struct RayCut {
 
 /// Chooses for the classes in view.modifiers.ray_classes: one RayCut for each, in the order of
 /// their bits. `cut`: that of the camera, of the same model and view. No class is finer than it,
-/// and radiosity meets the same. A coarser representation cannot shadow or mirror its own original,
+/// and one without a rule meets the same. A coarser representation cannot shadow or mirror its own original,
 /// for one of two reasons:
 /// - The picture shows the original by no ray at all. It is then replaced for all classes together,
 ///   by a level that is good enough for its shadows and its images (images are asked for with

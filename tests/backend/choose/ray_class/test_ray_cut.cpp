@@ -228,8 +228,22 @@ TEST(RayCut, OtherCriteriaAndKindsHaveNothingOfTheirOwn) {
     view = view_of(kShadowRays, 20, 1e-6);
     view.modifiers.criterion = DetailCriterion::Feature;
     EXPECT_EQ(shadow_cut(model, view).states.at(0), RayState::Need);
-    view = view_of(kRadiosityRays);
-    EXPECT_EQ(shadow_cut(model, view).states.at(0), RayState::Need);
+}
+
+TEST(RayCut, AClassWithoutARuleMeetsWhatTheCameraMeets) {
+    const Model model = floating();
+    int without = 0;
+    for (const RayMask rays : kRayClasses) {
+        if (rays == kCameraRays || choose::rule_of(rays) != choose::RayRule::None)
+            continue;
+        ++without;
+        const choose::RayCut cut = shadow_cut(model, view_of(rays));
+        EXPECT_EQ(cut.states.at(0), RayState::Need);
+        EXPECT_TRUE(cut.own.empty());
+    }
+    EXPECT_EQ(without, 1);  // radiosity
+    EXPECT_EQ(choose::rule_of(kShadowRays), choose::RayRule::Shadow);
+    EXPECT_EQ(choose::rule_of(kReflectionRays), choose::RayRule::Mirror);
 }
 
 TEST(RayCut, ALensMakesShadowsFinerToo) {

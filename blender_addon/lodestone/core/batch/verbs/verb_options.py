@@ -3,6 +3,7 @@
 
 from argparse import ArgumentParser, BooleanOptionalAction
 
+from ...picture.unseen_detail import CLASSES
 from .. import option_values
 from ..views_file import ANTIALIAS, NUMBERS, VIEW_KEYS
 
@@ -65,8 +66,9 @@ def add_picture(verb: ArgumentParser) -> None:
                       "what the picture does not show is: full, reflected (as shadows and mirrors "
                       "need) or shadows; default: the file's")  # fmt: skip
     verb.add_argument("--ray-classes", type=option_values.ray_classes, metavar="LIST", help="which "
-                      "rays may meet coarser levels than the camera's: shadow, reflection or both "
-                      "with a comma, or none; default: the file's")  # fmt: skip
+                      "rays may meet coarser levels than the camera's: any of "
+                      f"{', '.join(one.word for one in CLASSES)}, with commas between, or none; "
+                      "default: the file's")  # fmt: skip
 
 
 def add_content(verb: ArgumentParser) -> None:
