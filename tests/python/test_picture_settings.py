@@ -3,7 +3,7 @@
 in every session."""
 
 import unittest
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import addon_path  # noqa: F401
 from lodestone.core.native import lodestone_native as native
@@ -27,6 +27,8 @@ class BentBy(unittest.TestCase):
             {"when_dark": True},
             {"when_moving": True},
             {"depth": 2.0},
+            {"depth_focus": 3.0},
+            {"ray_classes": native.Rays.SHADOW},
             {"criterion": native.Criterion.AREA},
             {"lenses": (lens,)},
             {"lenses": (replace(lens, strength=2.0),)},
@@ -34,6 +36,8 @@ class BentBy(unittest.TestCase):
         ]
         said = [bent_by(replace(plain, **change)) for change in changes] + [()]
         self.assertEqual(len(set(said)), len(said))
+        tried = {name for change in changes for name in change}
+        self.assertEqual(tried, {one.name for one in fields(plain)} - {"closing"})
 
     def test_ids_of_a_session_and_places_of_a_frame_do_not(self):
         def bent(generation: int, closing: object) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import addon_path  # noqa: F401 - makes the add-on importable
 from lodestone.core.picture import why_sentences
-from lodestone_native import Drawn, Kind, Object
+from lodestone_native import Drawn, Kind, Object, structs
 
 
 def reason(**values):
@@ -58,6 +58,13 @@ class Why(unittest.TestCase):
         self.assertIn("= 0.5 px × 1.5 = 0.75 px ≤ 1 px", lines[0])
         self.assertIn("Importance × 3 finer", lines)
         self.assertIn("Motion × 2 coarser", lines)
+
+    def test_each_factor_of_the_library_has_its_words(self):
+        facts = {"struct_size", "lod", "pinned", "unused", "z", "pixel", "error", "stretch"}
+        facts |= {"error_px", "factor", "demand"}  # `demand` has a sentence of its own
+        fields = {name for name, *_ in structs.Reason._fields_ if not name.startswith("coarser_")}
+        words = (*why_sentences._FINER, *why_sentences._COARSER)
+        self.assertEqual(fields - facts, {name for name, _ in words})
 
     def test_a_thing_behind_the_camera_was_coarser_for_no_reason_that_was_named(self):
         lines = explain(factor=0.25, off_screen=4.0, error_px=3.0).lines

@@ -48,6 +48,47 @@ inline ScreenLens screen_lens(double x, double y, double radius, double strength
     return {"disc", {x, y}, radius, strength, 1};
 }
 
+/// Bends quality in one way after the other, `way` counting them from 0. False: there are no more.
+inline bool bend(QualityModifiers& modifiers, int way) {
+    // A new modifier breaks this line, so that its author adds a case. Lenses have tests of their
+    // own, and classes of rays leave the camera's cut as it is.
+    auto& [criterion, lenses, screen_lenses, depth, depth_focus, when_moving, closing, when_dark,
+           off_screen, ray_classes] = modifiers;
+    switch (way) {
+        case 0:
+            screen_lenses = {screen_lens(320, 180, 200, 3)};
+            return true;
+        case 1:
+            depth = 1.5;
+            depth_focus = 20;
+            return true;
+        case 2:
+            when_moving = true;
+            return true;
+        case 3:
+            when_dark = true;
+            return true;
+        case 4:
+            off_screen = OffScreen::Shadows;
+            return true;
+        case 5:
+            criterion = DetailCriterion::Area;
+            return true;
+        case 6:
+            criterion = DetailCriterion::Feature;
+            return true;
+        default:
+            return false;
+    }
+}
+inline int ways_to_bend() {
+    QualityModifiers any;
+    int ways = 0;
+    while (bend(any, ways))
+        ++ways;
+    return ways;
+}
+
 /// Bound of a ball.
 inline Bound ball(const glm::dvec3& center, double radius) {
     Bound bound;

@@ -132,20 +132,15 @@ class Modifiers:
     def struct(self) -> structs.Modifiers:
         lenses = [lens.struct() for lens in self.lenses]
         screen_lenses = [lens.struct() for lens in self.screen_lenses]
-        return structs.Modifiers(
-            criterion=self.criterion,
+        values: dict[str, Any] = dict(vars(self))  # those that are not set below are numbers
+        values.update(
             lenses=(structs.Lens * len(lenses))(*lenses),
             lens_count=len(lenses),
             screen_lenses=(structs.ScreenLens * len(screen_lenses))(*screen_lenses),
             screen_lens_count=len(screen_lenses),
-            depth=self.depth,
-            depth_focus=self.depth_focus,
-            when_moving=int(self.when_moving),
-            when_dark=int(self.when_dark),
-            off_screen=self.off_screen,
-            ray_classes=int(self.ray_classes),
             closing=ctypes.pointer(self.closing.struct()) if self.closing else None,
         )
+        return structs.Modifiers(**values)
 
 
 @dataclass(frozen=True)

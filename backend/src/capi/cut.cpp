@@ -70,8 +70,8 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
     return guard([&] {
         require(model, "model");
         require(out_cut, "out_cut");
-        checked(out_report, "out_report");
-        const lds_budget& given = checked(budget, "budget");
+        known_bytes(out_report, "out_report");
+        const lds_budget given = checked(budget, "budget");
         const Job progress = job_of(job);
         progress.stage(JobStage::Choose);
         View made_for = view_of(view, model);
@@ -185,7 +185,9 @@ lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t po
         model->summarize();
         const choose::ChoiceReason reason =
             choose::explain_choice(model->model, cut->view, cut->cut, node);
-        const choose::DetailFactors& factors = reason.factors;
+        // A new factor breaks this line, so that its author fills the field of lds_reason.
+        const auto& [importance, demand, lenses, screen_lenses, depth, motion, darkness,
+                     off_screen] = reason.factors;
         lds_reason out{};
         out.lod = reason.chosen.lod;
         out.z = reason.z;
@@ -194,14 +196,14 @@ lds_status lds_cut_choice_reason(lds_model* model, const lds_cut* cut, size_t po
         out.stretch = reason.stretch;
         out.error_px = reason.chosen.error_px;
         out.factor = reason.chosen.total;
-        out.importance = factors.importance;
-        out.demand = factors.demand;
-        out.lenses = factors.lenses;
-        out.screen_lenses = factors.screen_lenses;
-        out.depth = factors.depth;
-        out.motion = factors.motion;
-        out.darkness = factors.darkness;
-        out.off_screen = factors.off_screen;
+        out.importance = importance;
+        out.demand = demand;
+        out.lenses = lenses;
+        out.screen_lenses = screen_lenses;
+        out.depth = depth;
+        out.motion = motion;
+        out.darkness = darkness;
+        out.off_screen = off_screen;
         if (reason.coarser) {
             out.coarser_object = model->id_of(reason.coarser->object);
             out.coarser_lod = reason.coarser->lod;

@@ -44,12 +44,15 @@ ScreenLens screen_lens_of(const lds_screen_lens& given, int width, int height) {
 
 QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* model, int width,
                               int height) {
-    const lds_modifiers& given = checked(modifiers, "modifiers");
+    const lds_modifiers given = checked(modifiers, "modifiers");
     QualityModifiers out;
+    // A new modifier breaks this line, so that its author takes it from C here.
+    auto& [criterion, lenses, screen_lenses, depth, depth_focus, when_moving, closing, when_dark,
+           off_screen, ray_classes] = out;
     if (given.criterion < LDS_CRITERION_RESOLUTION || given.criterion > LDS_CRITERION_DISTANCE)
         fail(Status::InvalidArgument, "modifiers.criterion is ", given.criterion,
              "; 0 to 3 expected");
-    out.criterion = static_cast<DetailCriterion>(given.criterion);
+    criterion = static_cast<DetailCriterion>(given.criterion);
     if (given.lens_count > choose::kMostLenses || given.screen_lens_count > choose::kMostLenses)
         fail(Status::InvalidArgument, std::max(given.lens_count, given.screen_lens_count),
              " lenses; at most ", choose::kMostLenses);
@@ -58,25 +61,25 @@ QualityModifiers modifiers_of(const lds_modifiers* modifiers, const lds_model* m
     if (given.screen_lens_count > 0)
         require(given.screen_lenses, "modifiers.screen_lenses");
     for (size_t i = 0; i < given.lens_count; ++i)
-        out.lenses.push_back(lens_of(given.lenses[i], model));
+        lenses.push_back(lens_of(given.lenses[i], model));
     for (size_t i = 0; i < given.screen_lens_count; ++i)
-        out.screen_lenses.push_back(screen_lens_of(given.screen_lenses[i], width, height));
-    out.depth = given.depth;
-    out.depth_focus = given.depth_focus;
-    out.when_moving = given.when_moving != 0;
-    out.when_dark = given.when_dark != 0;
+        screen_lenses.push_back(screen_lens_of(given.screen_lenses[i], width, height));
+    depth = given.depth;
+    depth_focus = given.depth_focus;
+    when_moving = given.when_moving != 0;
+    when_dark = given.when_dark != 0;
     if (given.off_screen < LDS_OFF_SCREEN_FULL || given.off_screen > LDS_OFF_SCREEN_SHADOWS)
         fail(Status::InvalidArgument, "modifiers.off_screen is ", given.off_screen,
              "; 0 to 2 expected");
-    out.off_screen = static_cast<OffScreen>(given.off_screen);
+    off_screen = static_cast<OffScreen>(given.off_screen);
     // Law: lds_rays numbers the classes without the camera's bit, which comes first.
     constexpr uint32_t kAllClasses = kIndirectRays >> 1u;
     if ((given.ray_classes & ~kAllClasses) != 0)
         fail(Status::InvalidArgument, "modifiers.ray_classes is ", given.ray_classes, "; 0 to ",
              kAllClasses, " expected");
-    out.ray_classes = static_cast<RayMask>(given.ray_classes << 1u);
+    ray_classes = static_cast<RayMask>(given.ray_classes << 1u);
     if (given.closing != nullptr)
-        out.closing = camera_of(given.closing);
+        closing = camera_of(given.closing);
     return out;
 }
 

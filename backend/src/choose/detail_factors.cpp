@@ -65,6 +65,16 @@ bool glows(const Model& model, const Representation& representation) {
                        });
 }
 
+/// Whether nothing but lenses makes anything finer or coarser.
+bool only_lenses(const QualityModifiers& modifiers) {
+    // A new modifier breaks this line, so that its author decides here: FactorField::at is called
+    // only for what this function knows. Criteria and classes of rays are no factors.
+    const auto& [criterion, lenses, screen_lenses, depth, focus, when_moving, closing, when_dark,
+                 off_screen, ray_classes] = modifiers;
+    return screen_lenses.empty() && depth == 1 && !when_moving && !when_dark &&
+           off_screen == OffScreen::Full;
+}
+
 /// The brightest radiance that a white surface at this place may send back of this light's. source:
 /// Blender's energy units: a sun's strength in W/m^2, a lamp's power in W
 double lit(const Light& light, const Bound& bound) {
@@ -85,10 +95,13 @@ double lit(const Light& light, const Bound& bound) {
 }  // namespace
 
 double DetailFactors::total() const {
-    const double refine = importance * demand * lenses * screen_lenses;
+    // A new factor breaks this line, so that its author decides here whether it refines or coarsens.
+    const auto& [importance_, demand_, lenses_, screen_lenses_, depth_, motion_, darkness_,
+                 off_screen_] = *this;
+    const double refine = importance_ * demand_ * lenses_ * screen_lenses_;
     if (std::isinf(refine))
         return refine;
-    return total_refinement(refine / (depth * motion * darkness * off_screen));
+    return total_refinement(refine / (depth_ * motion_ * darkness_ * off_screen_));
 }
 
 double coarser_by_motion(double pixels) {
@@ -106,9 +119,7 @@ FactorField::FactorField(const Model& model, const View& view, bool in_any_order
       frame_(view.camera, view.width, view.height) {
     const QualityModifiers& modifiers = view.modifiers;
     refuse_nonsense(modifiers);
-    lenses_alone_ = modifiers.screen_lenses.empty() && modifiers.depth == 1 &&
-                    !modifiers.when_moving && !modifiers.when_dark &&
-                    modifiers.off_screen == OffScreen::Full;
+    lenses_alone_ = only_lenses(modifiers);
     bends_ = !lenses_.empty() || !lenses_alone_;
     pixel_ = pixel_at_1m(view);
     if (modifiers.off_screen != OffScreen::Full)

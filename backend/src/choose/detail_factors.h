@@ -10,13 +10,14 @@
 
 namespace lodestone::choose {
 
-/// Each factor is kept, so that "why this level?" can name it. The first four refine, the others
-/// coarsen.
+/// Each factor is kept, so that "why this level?" can name it.
 struct DetailFactors {
+    // These refine.
     double importance = 1;  // the product over the placements along its path
     double demand = 1;      // that of the most important object below it
     double lenses = 1;
     double screen_lenses = 1;
+    // These coarsen.
     double depth = 1;
     double motion = 1;
     double darkness = 1;

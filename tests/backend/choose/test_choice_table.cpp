@@ -201,12 +201,12 @@ TEST(ChoiceTable, WhyTellsWhatWasChosenByUnderAllThatBends) {
     for (uint32_t seed = 300; seed < 320; ++seed) {
         Forest forest(seed);
         View view = forest.view();
+        for (int way = 0; bent::bend(view.modifiers, way);)
+            ++way;
+        view.modifiers.criterion = DetailCriterion::Resolution;  // others know no pixels
         view.modifiers.lenses = {bent::lens(100 * forest.any(), 300 * forest.any(), 5),
                                  bent::lens(-100 * forest.any(), 300 * forest.any(), 0.3)};
         view.modifiers.lenses[1].shape = LensShape::Box;
-        view.modifiers.screen_lenses = {bent::screen_lens(320, 180, 200, 3)};
-        view.modifiers.depth = 1.5;
-        view.modifiers.when_dark = view.modifiers.when_moving = true;
         view.modifiers.closing = view.camera;
         view.modifiers.closing->position.x += 1;
         const choose::ChoiceTable table =

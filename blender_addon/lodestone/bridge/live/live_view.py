@@ -136,23 +136,7 @@ def rendered_lenses(scene: Any) -> list[Any]:
 
 def _hashable(settings: Settings) -> Hashable:
     """A value that is equal for settings that choose the same."""
-    modifiers = settings.modifiers
-    bent: Hashable = None
-    if modifiers is not None:
-        bent = (
-            tuple(
-                (*(lens.transform), lens.shape, lens.radius, lens.strength, lens.falloff,
-                 lens.filter, tuple(part.key for part in lens.objects))
-                for lens in modifiers.lenses
-            ),
-            modifiers.screen_lenses,
-            modifiers.depth,
-            modifiers.depth_focus,
-            modifiers.when_dark,
-            modifiers.off_screen,
-            modifiers.ray_classes,
-        )  # fmt: skip
-    return (settings.pixel_error, settings.budget, bent)
+    return (settings.pixel_error, settings.budget, settings.modifiers)
 
 
 def forget() -> None:

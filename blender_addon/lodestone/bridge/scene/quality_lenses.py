@@ -16,7 +16,6 @@ from . import scene_camera as cameras
 DISPLAY = {"SPHERE": native.LensShape.SPHERE, "CUBE": native.LensShape.BOX}
 MOST = 1024  # the backend takes no more
 MOST_FILTERED = 64
-FULL = native.OffScreen.FULL.name
 
 # The model's objects that a collection became
 PartsOf = Callable[[Any], Iterable[Any]]
@@ -106,12 +105,7 @@ def modifiers(
     depth = 1.0 if own is None else own.depth_exaggeration
     coarser = quality_settings.is_coarser_moving_dark(settings)
     ray_classes = quality_settings.ray_classes(settings)
-    off_screen = settings.off_screen
-    if not (
-        lenses or screen_lenses or depth != 1.0 or coarser or off_screen != FULL or ray_classes
-    ):
-        return None
-    return native.Modifiers(
+    bent = native.Modifiers(
         lenses=lenses,
         screen_lenses=screen_lenses,
         depth=depth,
@@ -119,9 +113,10 @@ def modifiers(
         when_moving=coarser,
         when_dark=coarser,
         closing=closing if coarser else None,
-        off_screen=native.OffScreen[off_screen],
+        off_screen=native.OffScreen[settings.off_screen],
         ray_classes=ray_classes,
     )
+    return None if bent == native.Modifiers() else bent
 
 
 def parts_in(extraction: Any) -> PartsOf:
