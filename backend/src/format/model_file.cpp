@@ -9,8 +9,12 @@
 #include "format/ply.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace lodestone::format {
 namespace {
@@ -59,20 +63,6 @@ std::filesystem::path library_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-Model read_model(const std::filesystem::path& path, Problems& problems) {
-    const std::string extension = extension_of(path);
-    if (extension == ".obj")
-        return read_obj(read_file(path), path, problems);
-    if (extension == ".ply")
-        return model_of(read_ply(read_file(path), path.stem().string(), problems),
-                        path.stem().string(), "ply:0");
-    if (extension == ".glb" || extension == ".gltf") {
-        const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-        return read_glb(read_file(path), folder, path.stem().string(), problems);
-    }
-    fail(Status::BadFile, "'", path.string(), "' is not read: only .obj, .ply, .glb and .gltf are");
-}
-
 Mesh flattened(const Model& model, std::vector<uint32_t>& materials) {
     constexpr uint32_t kNone = ~uint32_t{0};
     Mesh whole;
@@ -120,14 +110,16 @@ FlatModel flat(const Model& model) {
     return out;
 }
 
-void write_ply_file(const std::filesystem::path& path, FlatModel model) {
+void write_ply_file(const std::filesystem::path& path, const Model& whole) {
+    FlatModel model = flat(whole);
     if (std::none_of(model.materials.begin(), model.materials.end(),
                      [](const Material& material) { return material.vertex_colors; }))
         model.mesh.colors.clear();  // nobody sees them
     write_file(path, write_ply(model.mesh));
 }
 
-void write_obj_files(const std::filesystem::path& path, const FlatModel& model) {
+void write_obj_files(const std::filesystem::path& path, const Model& whole) {
+    const FlatModel model = flat(whole);
     const std::filesystem::path library = library_of(path);
     const MaterialLibrary written = write_mtl(model.materials);
     for (const auto& [name, picture] : written.pictures)
@@ -137,18 +129,71 @@ void write_obj_files(const std::filesystem::path& path, const FlatModel& model) 
                                library.filename().string()));
 }
 
+void write_glb_file(const std::filesystem::path& path, const Model& model) {
+    write_file(path, write_glb(model));
+}
+
+Model read_obj_files(const std::filesystem::path& path, Problems& problems) {
+    return read_obj(read_file(path), path, problems);
+}
+
+Model read_ply_file(const std::filesystem::path& path, Problems& problems) {
+    const std::string name = path.stem().string();
+    return model_of(read_ply(read_file(path), name, problems), name, "ply:0");
+}
+
+Model read_gltf_files(const std::filesystem::path& path, Problems& problems) {
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    return read_glb(read_file(path), folder, path.stem().string(), problems);
+}
+
+/// A format by the ending of its files. One that is only read has no `write`.
+struct ModelFormat {
+    std::string_view ending;
+    Model (*read)(const std::filesystem::path& path, Problems& problems);
+    void (*write)(const std::filesystem::path& path, const Model& model);
+};
+constexpr std::array<ModelFormat, 4> kFormats{{
+    {".obj", read_obj_files, write_obj_files},
+    {".ply", read_ply_file, write_ply_file},
+    {".glb", read_gltf_files, write_glb_file},
+    {".gltf", read_gltf_files, nullptr},
+}};
+
+/// ".obj, .ply and .glb"
+std::string endings(bool written) {
+    std::vector<std::string_view> all;
+    for (const ModelFormat& format : kFormats) {
+        if (!written || format.write != nullptr)
+            all.push_back(format.ending);
+    }
+    std::string out;
+    for (size_t i = 0; i < all.size(); ++i) {
+        out += i == 0 ? "" : i + 1 < all.size() ? ", " : " and ";
+        out += all[i];
+    }
+    return out;
+}
+
 }  // namespace
+
+Model read_model(const std::filesystem::path& path, Problems& problems) {
+    const std::string extension = extension_of(path);
+    for (const ModelFormat& format : kFormats) {
+        if (format.ending == extension)
+            return format.read(path, problems);
+    }
+    fail(Status::BadFile, "'", path.string(), "' is not read: only ", endings(false), " are");
+}
 
 void write_model(const std::filesystem::path& path, const Model& model) {
     const std::string extension = extension_of(path);
-    if (extension == ".glb")
-        return write_file(path, write_glb(model));
-    if (extension == ".ply")
-        return write_ply_file(path, flat(model));
-    if (extension == ".obj")
-        return write_obj_files(path, flat(model));
-    fail(Status::InvalidArgument, "'", path.string(),
-         "' is not written: only .glb, .obj and .ply are");
+    for (const ModelFormat& format : kFormats) {
+        if (format.ending == extension && format.write != nullptr)
+            return format.write(path, model);
+    }
+    fail(Status::InvalidArgument, "'", path.string(), "' is not written: only ", endings(true),
+         " are");
 }
 
 }  // namespace lodestone::format
