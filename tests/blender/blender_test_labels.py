@@ -149,8 +149,8 @@ class Labels(unittest.TestCase):
         bpy.ops.lodestone.detail_lens_enable()
         self.lens.empty_display_type = "PLAIN_AXES"
         self.assertEqual(self.too_long(self.lens), [])
-        # Each panel was drawn with something that it is about: a new one may need its own in tabs().
-        # One that is but the heading of others draws nothing itself.
+        # Each panel was drawn with something that it is about: a new one may need its own in tabs.
+        # A heading of other panels draws nothing itself.
         headings = {getattr(kind, "bl_parent_id", "") for kind in panels().values()}
         self.assertEqual(set(panels()) - self.seen - headings, set())
 
