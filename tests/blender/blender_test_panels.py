@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Guards the Properties tabs under our engine: what Cycles users look for is there, once."""
 
+import inspect
+import re
 import unittest
 
 import addon_utils
@@ -155,6 +157,16 @@ class Panels(unittest.TestCase):
         self.assertEqual(len(set(DRAWN)), len(DRAWN))
         for name in ("Subsurface", "Sheen", "Anisotropic"):
             self.assertNotIn(name, shown)
+
+    def test_the_surface_shows_each_input_that_is_read(self):
+        from lodestone.bridge.nodes.shader_nodes import Shaders
+        from lodestone.panels.material import DRAWN
+
+        text = inspect.getsource(Shaders._principled) + inspect.getsource(Shaders._specular)
+        read = set(re.findall(r'"([A-Z][A-Za-z ]+)"', text))
+        diffuse = {name for name in read if name.startswith("Subsurface")}  # drawn as base color
+        self.assertIn("Coat Weight", read)
+        self.assertEqual(read - diffuse - set(DRAWN), set())
 
     def test_presets_set_what_they_say(self):
         settings = self.scene.lodestone

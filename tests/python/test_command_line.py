@@ -7,12 +7,14 @@ import json
 import os
 import tempfile
 import unittest
+from dataclasses import fields
 from pathlib import Path
 
 import addon_path  # noqa: F401
+from lodestone.core.batch import views_file
 from lodestone.core.batch.command_line import jobs, parser
 from lodestone.core.batch.command_line import parse as parse_options
-from lodestone.core.batch.file_jobs import FileJob
+from lodestone.core.batch.file_jobs import FileJob, PictureRequest
 
 
 def parse(*arguments):
@@ -188,6 +190,11 @@ class Views(unittest.TestCase):
     def read(self, value, *options):
         self.path.write_text(json.dumps(value))
         return parse("render", "a.blend", "--views", str(self.path), *options)[0].pictures
+
+    def test_an_entry_can_say_whatever_a_picture_has_of_its_own(self):
+        controls = {control.key for control in views_file.NUMBERS}  # a picture's `overrides`
+        own = {one.name for one in fields(PictureRequest)} - {"overrides"}
+        self.assertEqual(set(views_file.VIEW_KEYS) - controls, own)
 
     def test_entries_fill_up_from_the_command_line(self):
         pictures = self.read(
