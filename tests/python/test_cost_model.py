@@ -9,7 +9,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import addon_path  # noqa: F401 - makes the add-on importable
-from lodestone.core.picture import cost_model
+from lodestone.core.picture import cost_model, quality_tree
 from lodestone_native import Antialias, Camera, CostModel
 
 WORK = cost_model.Work(
@@ -27,8 +27,9 @@ class Cost(unittest.TestCase):
     def test_a_million_triangles_are_read_as_was_measured(self):
         found = cost_model.predict(WORK)
         self.assertAlmostEqual(found.parse_cpu_s, 5.2)
-        # 1.65e-7 * 1e6^.2 * 1.3 each, 4 samples a pixel
-        self.assertAlmostEqual(found.trace_cpu_s, 230400 * 4 * 1.65e-7 * 1e6**0.2 * 1.3)
+        # 1.65e-7 * 1e6^.2 * 1.3 each, 1 + .63 * 9 samples a pixel in units of 6.7 / 4
+        samples = (1 + 0.63 * 9) * 4 / 6.7
+        self.assertAlmostEqual(found.trace_cpu_s, 230400 * samples * 1.65e-7 * 1e6**0.2 * 1.3)
         self.assertAlmostEqual(found.wall_s, 0.6 + 5.2 + found.trace_cpu_s / 2)
 
     def test_bounces_are_expected_to_take_what_they_gather(self):
@@ -37,15 +38,30 @@ class Cost(unittest.TestCase):
         rays = cost_model.gathering(2, 200, 0.5)
         self.assertAlmostEqual(rays, 0.1 / 0.25 * 200 * 2)
         bouncing = cost_model.predict(replace(WORK, gathering=rays)).trace_cpu_s
-        self.assertAlmostEqual(bouncing, direct * (4 + rays) / 4)
+        self.assertAlmostEqual(bouncing, direct * (WORK.samples + rays) / WORK.samples)
+
+    def test_fewer_samples_a_pixel_are_expected_to_take_less(self):
+        found = [replace(WORK, depth=depth).samples for depth in (2, 3)]
+        found.append(replace(WORK, antialias=Antialias.REFERENCE).samples)
+        found.insert(0, replace(WORK, antialias=Antialias.OFF).samples)
+        self.assertEqual(found, sorted(found))
+        self.assertAlmostEqual(found[1] / found[0], 1 + 0.63 * 4)
+
+    def test_full_detail_taught_that_levels_take_ten_times_as_long(self):
+        slow = SimpleNamespace(parse_cpu_s=5.2, trace_cpu_s=300.0, peak_bytes=10**9)
+        exact = replace(WORK, exact=True)
+        ratios = cost_model.learn(exact, slow, cost_model.Ratios())
+        self.assertAlmostEqual(cost_model.predict(exact, ratios).trace_cpu_s, 300.0)
+        plain = cost_model.predict(WORK).trace_cpu_s
+        self.assertEqual(cost_model.predict(WORK, ratios).trace_cpu_s, plain)
 
     def test_depth_of_field_was_expected_to_take_no_longer(self):
         sharp = cost_model.predict(WORK).trace_cpu_s
         blurred = cost_model.predict(replace(WORK, blurred=True)).trace_cpu_s
-        self.assertAlmostEqual(blurred, sharp * 45 / 4)  # both at the usual antialiasing
+        self.assertAlmostEqual(blurred, sharp * 45 / WORK.samples)  # both at the usual antialiasing
         summary = SimpleNamespace(bytes=1, triangles=1)
         exported = SimpleNamespace(cut_triangles=0, shadow_rays=1.0)
-        quality = SimpleNamespace(bounces=0, bounce_rays=0, bounce_error=1.0)
+        quality = quality_tree.quality(1.0)
         for camera, expected in (
             (CAMERA, True),
             (replace(CAMERA, aperture=0.0), False),
@@ -57,7 +73,7 @@ class Cost(unittest.TestCase):
 
     def test_leaves_and_shadow_rays_were_forgotten(self):
         view = SimpleNamespace(camera=CAMERA, width=4, height=3, border=(0, 0, 0, 0))
-        quality = SimpleNamespace(bounces=0, bounce_rays=0, bounce_error=1.0)
+        quality = quality_tree.quality(1.0)
         summary = SimpleNamespace(bytes=1000, triangles=10)
 
         def work(**more):

@@ -11,7 +11,7 @@ dense as their error asks for, and again from what these meet.
 import json
 import math
 import os
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -24,11 +24,10 @@ _SAMPLE_S = 1.65e-7
 # A shadow ray beside a sample, in ravenbridge_mansion with suns of 1, 2 x 2, 3 x 3, 5 x 5 rays
 _SHADOW_SHARE = 0.3
 _GATHERED = 0.1  # places a pixel where light is gathered, at an error of 1
-_SAMPLES: dict[int, float] = {
-    native.Antialias.OFF: 1.0,
-    native.Antialias.FINAL: 4.0,
-    native.Antialias.REFERENCE: 16.0,
-}
+# Of a pixel's n x n more samples this share is taken in the mean, and the unit below is for 6.7 of
+# them; measured in zengarden and ravenbridge_mansion (0.7) and the sample street (0.47)
+_MORE_SAMPLES = 0.63
+_SAMPLE = 4.0 / 6.7
 _BLURRED: dict[
     int, float
 ] = {  # with depth of field, instead of these; measured, on a sharp floor and soft heads
@@ -57,12 +56,16 @@ class Prediction:
 
 @dataclass(frozen=True)
 class Ratios:
-    """The ratios of what was measured to what was predicted for the last picture; 1 before there is
-    one."""
+    """The ratios of what was measured to what was predicted for the last picture of a kind; 1 before
+    there is one."""
 
     parse: float = 1.0
     trace: float = 1.0
     memory: float = 1.0
+    trace_exact: float = 1.0  # where everything is drawn as it is: rays look for holes in masks
+
+    def of_trace(self, work: "Work") -> float:
+        return self.trace_exact if work.exact else self.trace
 
 
 @dataclass(frozen=True)
@@ -80,6 +83,19 @@ class Work:
     threads: int
     gathering: float = 0.0  # rays a pixel that gather light for Bounces
     blurred: bool = False  # has depth of field
+    depth: int = 3  # samples along the side of a pixel that gets more of them
+    exact: bool = False  # everything is drawn as it is, masks too
+
+    @property
+    def samples(self) -> float:
+        """Samples of a pixel in the mean."""
+        if self.blurred:
+            return _BLURRED[self.antialias]
+        if self.antialias == native.Antialias.OFF:
+            return _SAMPLE
+        if self.antialias == native.Antialias.REFERENCE:
+            return _SAMPLE * 17.0
+        return _SAMPLE * (1.0 + _MORE_SAMPLES * self.depth**2)
 
     @classmethod
     def of(
@@ -101,7 +117,10 @@ class Work:
         sums = (summary.bytes + grown, summary.triangles + masks, drawn)
         rays = gathering(quality.bounces, quality.bounce_rays, quality.bounce_error)
         blurred = view.camera.aperture > 0.0 and not view.camera.orthographic
-        return cls(*sums, *whole, exported.shadow_rays, antialias, threads, rays, blurred)
+        return cls(
+            *sums, *whole, exported.shadow_rays, antialias, threads, rays, blurred,
+            quality.antialias_depth, quality.pixel_error <= 0.0,
+        )  # fmt: skip
 
 
 def gathering(bounces: int, rays: int, error: float) -> float:
@@ -118,8 +137,7 @@ def _parse_s_per_byte() -> float:
 def predict(work: Work, ratios: Ratios = Ratios()) -> Prediction:
     parse = work.bytes * _parse_s_per_byte() * ratios.parse
     each = _SAMPLE_S * max(1, work.triangles) ** 0.2 * (1.0 + _SHADOW_SHARE * work.shadow_rays)
-    samples = (_BLURRED if work.blurred else _SAMPLES)[work.antialias] + work.gathering
-    trace = work.pixels * samples * each * ratios.trace
+    trace = work.pixels * (work.samples + work.gathering) * each * ratios.of_trace(work)
     wall = _START_S + parse + trace / max(1, work.threads)
     kept = _PIXEL_BYTES * work.width * work.height
     peak = _EMPTY_BYTES + kept + work.bytes * ratios.memory
@@ -137,10 +155,12 @@ def learn(work: Work, measured: native.records.PovrayReport, before: Ratios) -> 
             return old
         return min(_MOST, max(1.0 / _MOST, found / expected))
 
-    return Ratios(
-        ratio(measured.parse_cpu_s, plain.parse_cpu_s, _LEAST_S, before.parse),
-        ratio(measured.trace_cpu_s, plain.trace_cpu_s, _LEAST_S, before.trace),
-        ratio(measured.peak_bytes - empty, work.bytes, 1e7, before.memory),
+    traced = ratio(measured.trace_cpu_s, plain.trace_cpu_s, _LEAST_S, before.of_trace(work))
+    return replace(
+        before,
+        parse=ratio(measured.parse_cpu_s, plain.parse_cpu_s, _LEAST_S, before.parse),
+        memory=ratio(measured.peak_bytes - empty, work.bytes, 1e7, before.memory),
+        **{"trace_exact" if work.exact else "trace": traced},
     )
 
 
