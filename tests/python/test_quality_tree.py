@@ -29,9 +29,9 @@ class Inherited(unittest.TestCase):
             own = (found.shadows, found.reflections, found.lights)
             self.assertEqual(own, (error,) * 3)
 
-    def test_textures_stay_as_they_are_up_to_a_pixel(self):
-        found = [quality(error).textures for error in (0.0, 0.5, 1.0, 1.5, 8.0)]
-        self.assertEqual(found, [0.0, 0.0, 0.0, 1.5, 8.0])
+    def test_textures_stay_as_they_are_below_a_pixel(self):
+        found = [quality(error).textures for error in (0.0, 0.5, 0.99, 1.0, 1.5, 8.0)]
+        self.assertEqual(found, [0.0, 0.0, 0.0, 1.0, 1.5, 8.0])
 
     def test_the_sky_is_occluded_but_in_draft_by_as_many_rays(self):
         found = [quality(error).sky_occlusion for error in (0.0, 1.0, 2.0, 4.0, 7.9, 8.0)]

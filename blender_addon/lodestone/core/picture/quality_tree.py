@@ -53,8 +53,9 @@ def _sky_occlusion(shadows: float) -> int:
 
 
 def _textures(error: float) -> float:
-    """Up to a pixel nothing that the picture's samples show is blurred."""
-    return error if error > 1.0 else 0.0
+    """Below a pixel nothing that the picture's samples show is blurred. At a pixel what is blurred
+    is no more than the pixel filter blurs, and what varies too little to get samples is even."""
+    return error if error >= 1.0 else 0.0
 
 
 def _halvings(error: float) -> int:
