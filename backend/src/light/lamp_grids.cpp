@@ -62,7 +62,9 @@ public:
     void add(const LitPoint& point, const glm::dvec3& all, const glm::dvec3& part) {
         const double steps = display_steps(all, part) / step_;
         const double pixels = penumbra_at(light_, view_, point.position) / narrowest_;
-        penumbra_ = std::max(penumbra_, std::min(pixels, steps));
+        // A row of rays too few is half a step off.
+        penumbrae_.push_back(
+            pixels > 1 ? std::min(std::max(2.0, pixels / kPenumbraeOfRay), steps / 2) : 1);
         // The middles of n parts of a width w at the distance d give the light of all of it to
         // about (w / (n d))^2 / 4 of it.
         const double distance = std::max(glm::length(light_.position - point.position), 1e-9);
@@ -77,10 +79,10 @@ public:
                                2 * extent_ * distance / (nearest * nearest) * std::sqrt(steps / 2));
     }
 
-    LampGrid grid(int most) const {
+    LampGrid grid(int most) {
         LampGrid out;
         const bool parts = light_.kind != LightKind::Point;
-        out.rays = grid_rays(std::max(penumbra_, parts ? spread_ : 0.0), most);
+        out.rays = grid_rays(std::max(nearly_largest(penumbrae_), parts ? spread_ : 0.0), most);
         // The edge of a cone is as soft as a shadow's.
         const bool cone = light_.kind == LightKind::Spot || light_.spread > 0;
         out.parts = parts && out.rays > 1 && (cone || spread_ > 1);
@@ -94,7 +96,7 @@ private:
     double narrowest_;
     double step_;
     double apart_;
-    double penumbra_ = 0;
+    std::vector<double> penumbrae_;  // the rays along an edge that each point asks for
     double spread_ = 0;
 };
 

@@ -42,11 +42,12 @@ int shorter_edge(const Light& light, int rays);
 /// more where these disagree.
 double shadow_rays(const Light& light, const LampGrid& grid);
 
-/// By region, in the order of its lights: the coarsest grids that show no step. Along an edge there
-/// are as many rays as the penumbra has pixels that can be told apart, or as the light has steps of
-/// an 8-bit display at the point (by each row of rays that is hidden it falls by one), whichever is
-/// less; and as many as keep its unhidden light within half a step where it is near and wide. Never
-/// more than finest_grid(). Any number of threads gives the same result.
+/// By region, in the order of its lights: the coarsest grids that show no step but at few points.
+/// Along an edge there is a ray for every three pixels of the penumbra that can be told apart, or
+/// for every two steps of an 8-bit display that the light is worth at the point (half a row of rays
+/// is then one step), whichever is less; and as many as keep its unhidden light within half a step
+/// where it is near and wide. Never more than finest_grid(). Any number of threads gives the same
+/// result.
 std::vector<std::vector<LampGrid>> fit_lamp_grids(const LightTree& tree, const LightCut& cut,
                                                   std::span<const LitPoint> points,
                                                   const LightShares& shares, const View& view,

@@ -7,8 +7,18 @@
 #include "model/view.h"
 
 #include <span>
+#include <vector>
 
 namespace lodestone::light {
+
+/// The narrowest penumbrae that show, side by side in one, for which one ray stands.
+/// Taste: in ravenbridge_mansion 3 x 3 rays of a sun for 8 pixels look like 5 x 5; a larger value
+/// shows steps.
+inline constexpr double kPenumbraeOfRay = 3;
+
+/// The largest of the values but for a hundredth of them, whose shadows may have steps; 0 of none.
+/// Their order is lost.
+double nearly_largest(std::vector<double>& values);
 
 /// The widest penumbra, in pixels, that a light gives in a view of these occluders (world frame).
 /// Sun: a thing that rises h above the lowest point of all throws its shadow at most h /

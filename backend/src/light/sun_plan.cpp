@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace lodestone::light {
 namespace {
@@ -21,15 +20,6 @@ constexpr double kNarrowSun = 0.009;
 /// The rays along an edge of such a sun.
 /// Taste: a larger value has smoother shadows of it where something is very near.
 constexpr int kNarrowRays = 5;
-/// The share of a view's points that may lie in wider penumbrae than the grid is made for.
-/// Taste: a larger value draws more shadows sharp.
-constexpr double kWider = 0.01;
-
-/// The narrowest penumbrae that show, side by side in one, for which one ray stands.
-/// Taste: in ravenbridge_mansion 3 x 3 rays for 8 pixels look like 5 x 5; a larger value shows
-/// steps.
-constexpr double kStepsOfRay = 3;
-
 /// The rays that POV-Ray casts to a grid before it decides whether it needs the others.
 /// Law: its corners (adaptive 0).
 constexpr double kCorners = 4;
@@ -43,13 +33,8 @@ double narrowest(const GridDemands& demands) {
 
 /// The fewest rays along an edge for penumbrae of these widths, in pixels: 1, 2, or 2^n + 1.
 int rays_for(std::vector<double>& widths, double step, int most) {
-    if (widths.empty())
-        return 1;
-    const auto wider = static_cast<size_t>(kWider * static_cast<double>(widths.size()));
-    std::nth_element(widths.begin(), widths.begin() + static_cast<ptrdiff_t>(wider), widths.end(),
-                     std::greater<>());
-    const double steps = widths[wider] / step;
-    return steps > 1 ? grid_rays(std::max(2.0, steps / kStepsOfRay), most) : 1;
+    const double steps = nearly_largest(widths) / step;
+    return steps > 1 ? grid_rays(std::max(2.0, steps / kPenumbraeOfRay), most) : 1;
 }
 
 }  // namespace
