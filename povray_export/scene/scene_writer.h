@@ -40,6 +40,8 @@ struct ExportOptions {
     /// The bytes of POV-Ray's memory that were asked for; 0: no limit. The cut is within them, and
     /// so are the masks that are cut out, but for an eighth.
     uint64_t budget = 0;
+    /// The pixels that are drawn around a border, for a filter that looks beyond it.
+    int margin = 0;
     /// Texture coordinates are written where a texture uses them; false: textures are their means.
     bool uvs = true;
 };

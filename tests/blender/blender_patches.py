@@ -207,7 +207,7 @@ def blender_scene(sheet):
     scene.cycles.diffuse_bounces = 0
     scene.cycles.glossy_bounces = 1
     scene.cycles.transmission_bounces = 8
-    scene.cycles.pixel_filter_type = "BOX"
+    scene.cycles.pixel_filter_type, scene.render.filter_size = "BOX", 0.01
     scene.render.resolution_x, scene.render.resolution_y = CELL * sheet.columns, CELL * sheet.rows
     scene.render.image_settings.file_format = "PNG"
     scene.camera.data.type = "ORTHO"

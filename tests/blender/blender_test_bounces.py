@@ -42,13 +42,14 @@ class Bounces(unittest.TestCase):
         render.image_settings.file_format = "OPEN_EXR"
         render.image_settings.color_depth = "32"
         scene.lodestone.pixel_error_render = 1.0
+        scene.lodestone.antialias = "FINAL"
         cycles = scene.cycles
         cycles.device, cycles.samples = "CPU", 128
         cycles.use_denoising = cycles.use_adaptive_sampling = False
         cycles.max_bounces = cycles.diffuse_bounces = BOUNCES
         cycles.glossy_bounces = cycles.transmission_bounces = 0
         cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-        cycles.pixel_filter_type = "BOX"
+        cycles.pixel_filter_type, render.filter_size = "BOX", 0.01
 
     def render(self, engine, bounces=0):
         self.scene.render.engine = engine

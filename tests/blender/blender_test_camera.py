@@ -182,7 +182,7 @@ class GlowingBalls(unittest.TestCase):
         cycles = scene.cycles
         cycles.device, cycles.samples = "CPU", 64
         cycles.use_denoising = cycles.use_adaptive_sampling = False
-        cycles.pixel_filter_type = "BOX"
+        cycles.pixel_filter_type, render.filter_size = "BOX", 0.01
         self.glow = bpy.data.materials.new("Glow")
         self.glow.use_nodes = True
         tree = self.glow.node_tree

@@ -57,7 +57,7 @@ class Lights(unittest.TestCase):
         cycles.use_denoising = cycles.use_adaptive_sampling = False
         cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 0
         cycles.sample_clamp_direct = 0.0
-        cycles.pixel_filter_type = "BOX"  # as POV-Ray
+        cycles.pixel_filter_type, scene.render.filter_size = "BOX", 0.01  # as POV-Ray
 
     def render(self, engine):
         """Display values, lowest row first: rows of RGB triples."""

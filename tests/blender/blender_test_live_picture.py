@@ -27,6 +27,7 @@ class LivePicture(unittest.TestCase):
         self.folder = Path(folder.name)
         self.scene.render.engine = "LODESTONE_POVRAY"
         self.scene.render.film_transparent = True
+        self.scene.render.filter_size = 0.01  # finished pictures are not blurred
         self.scene.render.filepath = str(self.folder / "picture.png")
         scenes.cube("Red", (1.0, 0.5, 0.0), 1.0)
         scenes.sun()

@@ -59,8 +59,9 @@ class Output(unittest.TestCase):
         self.scene.lodestone.keep_scene_files = "ALWAYS"
         part_width, part_height, part = self.render()
         (ini,) = self.folder.rglob("scene.ini")
-        rows = {"Start_Column=17", "End_Column=48", "Start_Row=19", "End_Row=27"}
-        self.assertLessEqual(rows, set(ini.read_text().splitlines()))  # the rest is not traced
+        rows = {"Start_Column=16", "End_Column=49", "Start_Row=18", "End_Row=28"}
+        # The rest is not traced, but for a pixel around it, which the filter looks at.
+        self.assertLessEqual(rows, set(ini.read_text().splitlines()))
         self.assertEqual((part_width, part_height), (width, height))
         render.use_crop_to_border = True
         crop_width, crop_height, crop = self.render()
@@ -74,6 +75,20 @@ class Output(unittest.TestCase):
                 if inside:
                     there = 4 * ((y - 9) * crop_width + x - 16)
                     self.assertEqual(crop[there : there + 3], expected, (x, y))
+
+    def test_pictures_are_as_soft_as_the_filter_size_says(self):
+        contrasts, means = [], []
+        for size in (0.01, 1.5, 4.0):
+            self.scene.render.filter_size = size
+            width, height, pixels = self.render()
+            values = [pixels[4 * i] for i in range(width * height)]
+            steps = (abs(a - b) for a, b in zip(values, values[1:]))
+            contrasts.append(max(steps))
+            means.append(sum(values) / len(values))
+        self.assertGreater(contrasts[0], 1.05 * contrasts[1])
+        self.assertGreater(contrasts[1], 1.5 * contrasts[2])
+        for mean in means[1:]:
+            self.assertAlmostEqual(mean, means[0], delta=0.02)
 
     def test_resolution_percentage_scales_the_picture(self):
         self.scene.render.resolution_percentage = 50

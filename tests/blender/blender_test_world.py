@@ -195,6 +195,7 @@ class World(unittest.TestCase):
         render.image_settings.color_depth = "32"
         cycles = scene.cycles
         cycles.device, cycles.samples, cycles.pixel_filter_type = "CPU", 128, "BOX"
+        render.filter_size = 0.01  # as "BOX"
         cycles.use_denoising = cycles.use_adaptive_sampling = False
         cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 0
         cycles.sample_clamp_direct = 0.0

@@ -62,6 +62,16 @@ povray::Antialiasing antialiasing_of(const lds_povray_options& options) {
     }
 }
 
+/// The variance by which pictures are blurred.
+double spread_of(const lds_povray_options& options) {
+    const double size = error_of(options.filter_size, "filter_size");
+    if (options.false_color != 0 || options.covered_only != 0)
+        return 0;
+    const povray::Antialiasing antialiasing = antialiasing_of(options);
+    const povray::Shading shading = povray::filled_up(shading_of(options), antialiasing, 0);
+    return image::missing_spread(size, povray::samples_along_side(shading, antialiasing));
+}
+
 povray::RunOptions run_options(const char* folder, const char* picture,
                                const lds_povray_options& options) {
     povray::RunOptions out;
@@ -72,12 +82,7 @@ povray::RunOptions run_options(const char* folder, const char* picture,
     const std::string ending = std::filesystem::path(picture).extension().string();
     if (ending != ".exr" && ending != ".png")
         fail(Status::InvalidArgument, "the picture '", picture, "' must end in .exr or .png");
-    if (options.false_color == 0 && options.covered_only == 0) {
-        const povray::Antialiasing antialiasing = antialiasing_of(options);
-        const povray::Shading shading = povray::filled_up(shading_of(options), antialiasing, 0);
-        out.spread = image::missing_spread(error_of(options.filter_size, "filter_size"),
-                                           povray::samples_along_side(shading, antialiasing));
-    }
+    out.spread = spread_of(options);
     out.output = ending == ".exr" ? povray::OutputFormat::Exr : povray::OutputFormat::Png;
     return out;
 }
@@ -139,6 +144,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         wanted.false_color = given.false_color != 0;
         wanted.colors = cut->colors;
         wanted.covered_only = given.covered_only != 0;
+        wanted.margin = image::spread_reach(spread_of(given));
         if (std::isnan(given.light_error))
             fail(Status::InvalidArgument, "options.light_error is not a number");
         wanted.rays = cut->rays;

@@ -54,6 +54,10 @@ double missing_spread(double filter_size, int samples_along_side) {
     return std::max(0.0, support * support * variance_of_window() - sampled);
 }
 
+int spread_reach(double variance) {
+    return variance > 0 ? static_cast<int>(std::ceil(variance / (2 * kMostShare))) : 0;
+}
+
 void spread_pixels(Image& image, double variance, const ImageRegion& part) {
     if (part.left < 0 || part.top < 0 || part.width < 1 || part.height < 1 ||
         int64_t{part.left} + part.width > image.width ||
@@ -72,7 +76,7 @@ void spread_pixels(Image& image, double variance, const ImageRegion& part) {
         std::replace_if(
             line, line + 4 * width, [](float value) { return !std::isfinite(value); }, 0.0f);
     }
-    const auto passes = static_cast<int>(std::ceil(variance / (2 * kMostShare)));
+    const int passes = spread_reach(variance);  // each reaches a pixel farther
     const auto share = static_cast<float>(variance / (2 * passes));
     for (int pass = 0; pass < passes; ++pass) {
         for (size_t y = 0; y < height; ++y)

@@ -16,6 +16,9 @@ inline constexpr double kMostFilterSize = 10;
 /// that spreads less.
 double missing_spread(double filter_size, int samples_along_side);
 
+/// The pixels around a part of a picture that are needed to blur it by a variance.
+int spread_reach(double variance);
+
 /// Blurs a part of a picture of linear light with associated alpha by that variance, the same along
 /// both axes. Nothing comes in from outside of the part. Values that are no numbers become 0.
 void spread_pixels(Image& image, double variance, const ImageRegion& part);

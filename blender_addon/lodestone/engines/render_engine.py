@@ -143,8 +143,7 @@ class _Run:
         self.scene = depsgraph.scene_eval
         addon_session().changed_shapes.reading()
         settings = SceneSettings(depsgraph.scene)  # of the original: writing them tags nothing
-        self.keep = settings.keep_scene_files
-        self.scene_settings = settings
+        self.keep, self.scene_settings = settings.keep_scene_files, settings
         self.build = "ALL" if engine.is_animation else settings.build_on_render
         self.left = 0  # objects and groups without levels
         self.store = store_path.store_folder(getattr(engine, "lodestone_blend", ""))

@@ -213,7 +213,7 @@ def main():
             cycles.device, cycles.samples = "CPU", options.samples
             cycles.use_denoising = cycles.use_adaptive_sampling = False
             cycles.sample_clamp_indirect = 0.0
-            cycles.pixel_filter_type = "BOX"
+            cycles.pixel_filter_type, scene.render.filter_size = "BOX", 0.01
             cycles.glossy_bounces = cycles.transmission_bounces = 0
             for bounces in options.bounces:
                 cycles.max_bounces = cycles.diffuse_bounces = bounces

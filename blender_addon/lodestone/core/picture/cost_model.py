@@ -56,8 +56,8 @@ class Prediction:
 
 @dataclass(frozen=True)
 class Ratios:
-    """The ratios of what was measured to what was predicted for the last picture of a kind; 1 before
-    there is one."""
+    """The ratios of what was measured to what was predicted for the last picture of a kind; 1
+    before there is one."""
 
     parse: float = 1.0
     trace: float = 1.0
