@@ -14,6 +14,8 @@ import povray_state
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
+# Without a graphics card most of the time goes into pixels. For who does not look at them:
+SMALL = ("--window-geometry", "0", "0", "640", "400")
 
 
 class Window(unittest.TestCase):
@@ -76,13 +78,13 @@ class Window(unittest.TestCase):
         self.assertNotIn("Traceback", said)
 
     def test_update_levels(self):
-        self.succeeds(self.blender("window_update_levels.py", "--enable-event-simulate"))
+        self.succeeds(self.blender("window_update_levels.py", "--enable-event-simulate", *SMALL))
 
     def test_seeing(self):
-        self.succeeds(self.blender("window_seeing.py", "--enable-event-simulate"))
+        self.succeeds(self.blender("window_seeing.py", "--enable-event-simulate", *SMALL))
 
     def test_viewport(self):
-        child = self.blender("window_viewport.py")
+        child = self.blender("window_viewport.py", *SMALL)
         code = child.wait(240)
         said = self.log.read_text("utf-8", "replace")
         self.assertEqual(code, 0, said)
@@ -113,7 +115,7 @@ class Window(unittest.TestCase):
         program.write_text("#!/bin/sh\nexec sleep 60\n")
         program.chmod(0o755)
         self.environment["LODESTONE_POVRAY"] = str(program)
-        self.succeeds(self.blender("window_disable.py"))
+        self.succeeds(self.blender("window_disable.py", *SMALL))
 
     def test_escape_stops_povray_within_a_second(self):
         pid = self.folder / "pid"

@@ -15,11 +15,12 @@ FOLDER = Path(sys.argv[-1])
 DECIDED = "Ball.3"  # holds a decision: the one thing Update Levels stores an id on
 
 
-def make():
+def make(subdivisions=3):
+    """Six balls. Who wants to interrupt what reads or builds them subdivides them more often."""
     scene = scenes.fresh()
     for i in range(6):
         ball = scenes.cube(f"Ball.{i}", (2 * i, 0, 0))
-        ball.modifiers.new("Subdivision", "SUBSURF").render_levels = 6
+        ball.modifiers.new("Subdivision", "SUBSURF").render_levels = subdivisions
     bpy.data.objects[DECIDED].lodestone.role = "ENVIRONMENT"
     bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "window.blend"))
     with steps.window():
@@ -95,7 +96,7 @@ def one_undo_takes_it_back():
 
 
 def escape_while_reading_changes_nothing():
-    make()
+    make(6)
     before = state()
     with steps.window():
         bpy.ops.lodestone.update_levels("INVOKE_DEFAULT", confirm=False)
@@ -112,7 +113,7 @@ def is_building():
 def escape_while_building_changes_nothing():
     from lodestone.operators import update_levels
 
-    make()
+    make(6)
     for i in range(30):
         item = scenes.cube(f"More.{i}", (0, 2 * i, 0), 1.0 + i / 100)
         item.modifiers.new("Subdivision", "SUBSURF").render_levels = 6
@@ -166,7 +167,7 @@ def a_dialog_that_is_left_changes_nothing():
 
 
 def loading_a_file_stops_it():
-    make()
+    make(6)
     with steps.window():
         bpy.ops.lodestone.update_levels("INVOKE_DEFAULT", confirm=False)
     yield from steps.wait_until(is_building)
