@@ -19,35 +19,36 @@ BATCH = ROOT / "blender_addon" / "lodestone" / "batch.py"
 STAGE = Path(os.environ.get("LODESTONE_STAGE") or ROOT / "build" / "release" / "stage")
 
 MAKE = """
-import bpy, math, sys
-bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-scene = bpy.context.scene
-scene.render.resolution_x, scene.render.resolution_y = 64, 36
-scene.view_settings.view_transform = "Standard"
-def place(name, data, location=(0, 0, 0)):
-    item = bpy.data.objects.new(name, data)
-    item.location = location
-    scene.collection.objects.link(item)
-    return item
-kind, path = sys.argv[-2:]
-if kind != "no_camera":
-    for name, height in (("Camera", 10), ("High", 40)):
-        camera = place(name, bpy.data.cameras.new(name), (0, 0, height))
-        scene.camera = scene.camera or camera
-place("Sun", bpy.data.lights.new("Sun", "SUN")).data.energy = 3
-if kind != "no_objects":
-    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=6, location=(1, 0, 0))
-    bpy.context.object.name = "Ball" if kind != "names" else 'q"uote\\n{brace} \\u540d'
-if kind == "animated":
-    ball = bpy.context.object
-    for frame in (1, 2):
-        ball.location.x = 2 * frame - 3
-        ball.keyframe_insert("location", frame=frame)
-if kind == "volume":
-    place("Smoke", bpy.data.volumes.new("Smoke"))
-    place("Ink", bpy.data.grease_pencils.new("Ink"))
-    scene.use_nodes = True
-bpy.ops.wm.save_as_mainfile(filepath=path)
+import bpy, sys
+folder, *kinds = sys.argv[sys.argv.index("--") + 1 :]
+for kind in kinds:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = 64, 36
+    scene.view_settings.view_transform = "Standard"
+    def place(name, data, location=(0, 0, 0)):
+        item = bpy.data.objects.new(name, data)
+        item.location = location
+        scene.collection.objects.link(item)
+        return item
+    if kind != "no_camera":
+        for name, height in (("Camera", 10), ("High", 40)):
+            camera = place(name, bpy.data.cameras.new(name), (0, 0, height))
+            scene.camera = scene.camera or camera
+    place("Sun", bpy.data.lights.new("Sun", "SUN")).data.energy = 3
+    if kind != "no_objects":
+        bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=6, location=(1, 0, 0))
+        bpy.context.object.name = "Ball" if kind != "names" else 'q"uote\\n{brace} \\u540d'
+    if kind == "animated":
+        ball = bpy.context.object
+        for frame in (1, 2):
+            ball.location.x = 2 * frame - 3
+            ball.keyframe_insert("location", frame=frame)
+    if kind == "volume":
+        place("Smoke", bpy.data.volumes.new("Smoke"))
+        place("Ink", bpy.data.grease_pencils.new("Ink"))
+        scene.use_nodes = True
+    bpy.ops.wm.save_as_mainfile(filepath=f"{folder}/{kind}.blend")
 """
 
 
@@ -67,10 +68,10 @@ class Batch(unittest.TestCase):
         cls.made = Path(tempfile.mkdtemp())
         script = cls.made / "make.py"
         script.write_text(MAKE)
-        for kind in ("plain", "no_camera", "no_objects", "names", "animated", "volume"):
-            command = ["blender", "-b", "--factory-startup", "--python-exit-code", "1"]
-            command += ["--python", str(script), "--", kind, str(cls.made / f"{kind}.blend")]
-            subprocess.run(command, check=True, capture_output=True)
+        kinds = ("plain", "no_camera", "no_objects", "names", "animated", "volume")
+        command = ["blender", "-b", "--factory-startup", "--python-exit-code", "1"]
+        command += ["--python", str(script), "--", str(cls.made), *kinds]
+        subprocess.run(command, check=True, capture_output=True)
 
     @classmethod
     def tearDownClass(cls):
@@ -346,11 +347,10 @@ class CommandLine(unittest.TestCase):
         (self.folder / "make.py").write_text(MAKE)
 
     def make(self, kind):
-        blend = str(self.folder / f"{kind}.blend")
         command = ["blender", "-b", "--factory-startup", "--python-exit-code", "1"]
-        command += ["--python", str(self.folder / "make.py"), "--", kind, blend]
+        command += ["--python", str(self.folder / "make.py"), "--", str(self.folder), kind]
         subprocess.run(command, check=True, capture_output=True)
-        return blend
+        return str(self.folder / f"{kind}.blend")
 
     def render(self, kind="plain", **environment):
         command = ["blender", "-b", "--factory-startup", self.make(kind), "--addons", "lodestone"]
