@@ -4,10 +4,21 @@
 #include "povray_export/scene/camera_writer.h"
 #include "povray_export/scene/povray_number.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace lodestone::povray {
 namespace {
+
+/// A border that is larger on all sides, as far as the picture goes.
+RenderBorder with_margin(const View& view, int margin) {
+    const auto [left, top, width, height] = *view.border;
+    const int right = std::min(left + width + margin, view.width);
+    const int bottom = std::min(top + height + margin, view.height);
+    const int first_column = std::max(0, left - margin);
+    const int first_row = std::max(0, top - margin);
+    return {first_column, first_row, right - first_column, bottom - first_row};
+}
 
 std::string adaptive(const Shading& shading) {
     std::string out = "Antialias=On\nSampling_Method=1\nAntialias_Threshold=";
@@ -19,8 +30,8 @@ std::string adaptive(const Shading& shading) {
 
 }  // namespace
 
-std::string render_settings(const View& view, const Shading& shading, Antialiasing antialiasing,
-                            bool transparent) {
+std::string render_settings(const View& view, int margin, const Shading& shading,
+                            Antialiasing antialiasing, bool transparent) {
     std::string out =
         "; Lodestone " LODESTONE_VERSION
         "\nInput_File_Name=scene.pov\nOutput_File_Name=scene.png\n"
@@ -29,7 +40,7 @@ std::string render_settings(const View& view, const Shading& shading, Antialiasi
     out += "\nHeight=";
     append_count(out, static_cast<uint64_t>(view.height));
     if (view.border) {
-        const auto [left, top, width, height] = *view.border;
+        const auto [left, top, width, height] = with_margin(view, margin);
         const std::pair<const char*, int> ends[] = {{"Start_Column", left + 1},
                                                     {"End_Column", left + width},
                                                     {"Start_Row", top + 1},

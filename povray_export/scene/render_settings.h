@@ -9,9 +9,9 @@
 
 namespace lodestone::povray {
 
-/// The text of scene.ini. `shading` is filled up; `transparent` says that the picture has an alpha
+/// The text of scene.ini. `margin`: the pixels that are drawn around a border. `shading` is filled up; `transparent` says that the picture has an alpha
 /// channel.
-std::string render_settings(const View& view, const Shading& shading, Antialiasing antialiasing,
-                            bool transparent);
+std::string render_settings(const View& view, int margin, const Shading& shading,
+                            Antialiasing antialiasing, bool transparent);
 
 }  // namespace lodestone::povray

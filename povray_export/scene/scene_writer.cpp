@@ -55,20 +55,6 @@ struct OccurrenceUse {
     std::optional<glm::dvec3> dull = {};  // shown in this color alone
 };
 
-/// The view with a border that is larger on all sides, as far as the picture goes.
-View with_margin(View view, int margin) {
-    if (!view.border)
-        return view;
-    auto& [left, top, width, height] = *view.border;
-    const int right = std::min(left + width + margin, view.width);
-    const int bottom = std::min(top + height + margin, view.height);
-    left = std::max(0, left - margin);
-    top = std::max(0, top - margin);
-    width = right - left;
-    height = bottom - top;
-    return view;
-}
-
 class SceneWriter {
 public:
     SceneWriter(const Model& model, const choose::Cut& cut, const View& view,
@@ -108,7 +94,7 @@ public:
             report_.written += sky_.written ? 1u : 0u;
         }
         write_text("scene.pov", scene());
-        write_text("scene.ini", render_settings(with_margin(view_, options_.margin), shading_,
+        write_text("scene.ini", render_settings(view_, options_.margin, shading_,
                                                 options_.antialiasing, transparent()));
         ExportReport report = report_;
         includes_.add_to(report);

@@ -15,11 +15,12 @@ std::string written(const Camera& camera, Problems& problems) {
     return text;
 }
 
-std::string ini_of(const View& view) {
+std::string ini_of(const View& view, int margin = 0) {
     scenes::Builder builder;
     builder.place(builder.mesh(shapes::cube()));
     ExportOptions options;
     options.folder = scratch("camera_ini");
+    options.margin = margin;
     Problems problems;
     scenes::write(builder.finish(), view, options, problems);
     return read_file(options.folder / "scene.ini");
@@ -74,5 +75,15 @@ TEST(PovrayCamera, ABorderIsTheOnlyPartDrawn) {
     const std::string ini = ini_of(view);
     for (const char* line :
          {"Start_Column=17\n", "End_Column=48\n", "Start_Row=10\n", "End_Row=27\n"})
+        EXPECT_TRUE(has(ini, line)) << line << ini;
+}
+
+TEST(PovrayCamera, AMarginIsDrawnAroundABorderWithinThePicture) {
+    View view = scenes::above(64, 36);
+    EXPECT_FALSE(has(ini_of(view, 2), "Start_Column"));
+    view.border = RenderBorder{1, 9, 32, 26};
+    const std::string ini = ini_of(view, 2);
+    for (const char* line :
+         {"Start_Column=1\n", "End_Column=35\n", "Start_Row=8\n", "End_Row=36\n"})
         EXPECT_TRUE(has(ini, line)) << line << ini;
 }
