@@ -63,19 +63,20 @@ int side_of(int texels) {
 }
 
 HeightMap integrated(const Texture& normals) {
-    const image::Image from = image::decoded(*normals.picture);
+    const image::PackedPtr from = image::packed(*normals.picture);
+    const image::TexelRows rows(*from, normals.picture->space);
     HeightMap map;
-    map.width = side_of(from.width);
-    map.height = side_of(from.height);
+    map.width = side_of(from->width);
+    map.height = side_of(from->height);
     const auto width = static_cast<size_t>(map.width);
     const auto height = static_cast<size_t>(map.height);
     // The slope along a row, and along a column (downward) as the imaginary part.
     std::vector<Complex> slopes(width * height);
     std::vector<int> counts(slopes.size(), 0);
-    const auto add = [&](size_t to, int x, int y) {
-        const float* texel =
-            from.pixels.data() +
-            4 * (static_cast<size_t>(y) * static_cast<size_t>(from.width) + static_cast<size_t>(x));
+    std::vector<float> row(4 * static_cast<size_t>(from->width));
+    int row_y = -1;
+    const auto add = [&](size_t to, int x) {
+        const float* texel = row.data() + 4 * static_cast<size_t>(x);
         const glm::dvec3 n =
             2.0 * image::color_of(normals, glm::dvec4(texel[0], texel[1], texel[2], 1)) - 1.0;
         const double up = std::max(n.z, 1e-3);
@@ -83,13 +84,15 @@ HeightMap integrated(const Texture& normals) {
                               std::clamp(n.y / up, -kSteepest, kSteepest));
         ++counts[to];
     };
-    for (int y = 0; y < std::max(from.height, map.height); ++y) {
-        const int source_y = from.height >= map.height ? y : y * from.height / map.height;
-        const int to_y = from.height >= map.height ? y * map.height / from.height : y;
-        for (int x = 0; x < std::max(from.width, map.width); ++x) {
-            const int source_x = from.width >= map.width ? x : x * from.width / map.width;
-            const int to_x = from.width >= map.width ? x * map.width / from.width : x;
-            add(static_cast<size_t>(to_y) * width + static_cast<size_t>(to_x), source_x, source_y);
+    for (int y = 0; y < std::max(from->height, map.height); ++y) {
+        const int source_y = from->height >= map.height ? y : y * from->height / map.height;
+        const int to_y = from->height >= map.height ? y * map.height / from->height : y;
+        if (source_y != row_y)
+            rows.read(row_y = source_y, row.data());
+        for (int x = 0; x < std::max(from->width, map.width); ++x) {
+            const int source_x = from->width >= map.width ? x : x * from->width / map.width;
+            const int to_x = from->width >= map.width ? x * map.width / from->width : x;
+            add(static_cast<size_t>(to_y) * width + static_cast<size_t>(to_x), source_x);
         }
     }
     for (size_t i = 0; i < slopes.size(); ++i)

@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/texture/picture_writer.h"
 
-#include "base/color.h"
 #include "base/error.h"
 #include "base/files.h"
-#include "image/image_reduction.h"
-#include "image/mask_texels.h"
-#include "image/texture_sampler.h"
 #include "povray_export/scene/povray_number.h"
-#include "povray_export/texture/height_map.h"
+#include "povray_export/texture/pigment_picture.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <unordered_map>
 
 namespace lodestone::povray {
 namespace {
@@ -51,11 +46,6 @@ int png_color_type(const std::string& bytes) {
     return static_cast<unsigned char>(bytes[25]);
 }
 
-bool is_number(PigmentContent content) {
-    return content == PigmentContent::Number || content == PigmentContent::Alpha ||
-           content == PigmentContent::Height;
-}
-
 /// Whether POV-Ray may read the picture's own file: it shows the texture's very values.
 bool usable_as_is(const Texture& texture, PigmentContent content) {
     const Picture& picture = *texture.picture;
@@ -69,90 +59,6 @@ bool usable_as_is(const Texture& texture, PigmentContent content) {
                (!png || type == 0 || type == 2 || type == 3);
     // POV-Ray weighs colors its own way: only a gray picture is the number everybody means.
     return texture.channel != TextureChannel::Alpha && type == 0;
-}
-
-int halved(int side, int halvings) {
-    return std::max(1, side >> halvings);
-}
-
-/// Whether the numbers of a picture are a mask's.
-bool is_mask(const image::Image& picture) {
-    image::MaskTexels texels{picture.width, picture.height, {}};
-    for (size_t i = 0; i < picture.pixels.size(); i += 4)
-        texels.alpha.push_back(static_cast<uint8_t>(std::lround(255 * picture.pixels[i])));
-    image::SeenTexels seen = image::unseen_texels(picture.width, picture.height);
-    std::fill(seen.blocks.begin(), seen.blocks.end(), uint8_t{1});
-    return image::count(texels, seen).is_mask();
-}
-
-/// Makes the numbers of a mask that was made smaller 0 or 1, but for its edges, of the same mean:
-/// else all of a tree far away is half clear, and rays go on through each of its leaves.
-void sharpen(image::Image& picture) {
-    // The factor on differences to the level that becomes 1/2.
-    // Taste: edges of half a texel; a larger value draws steps.
-    constexpr float kSlope = 4;
-    const auto sharp = [](float value, float level) {
-        return std::clamp(0.5f + kSlope * (value - level), 0.0f, 1.0f);
-    };
-    double sum = 0;
-    for (size_t i = 0; i < picture.pixels.size(); i += 4)
-        sum += static_cast<double>(picture.pixels[i]);
-    float low = -0.5f;
-    float high = 1.5f;
-    // Law: 2^-12 of the range is finer than a step of 8 bits.
-    for (int step = 0; step < 12; ++step) {
-        const float level = (low + high) / 2;
-        double found = 0;
-        for (size_t i = 0; i < picture.pixels.size(); i += 4)
-            found += static_cast<double>(sharp(picture.pixels[i], level));
-        (found > sum ? low : high) = level;
-    }
-    for (size_t i = 0; i < picture.pixels.size(); ++i) {
-        if (i % 4 != 3)
-            picture.pixels[i] = sharp(picture.pixels[i], (low + high) / 2);
-    }
-}
-
-std::string baked(const Texture& texture, PigmentContent content, int halvings) {
-    if (content == PigmentContent::Height)
-        return png_of(*height_map(texture));
-    image::Image from = image::decoded(*texture.picture);
-    image::Image to;
-    to.width = from.width;
-    to.height = from.height;
-    to.pixels.resize(from.pixels.size());
-    for (size_t i = 0; i < from.pixels.size(); i += 4) {
-        const glm::dvec4 texel(from.pixels[i], from.pixels[i + 1], from.pixels[i + 2],
-                               from.pixels[i + 3]);
-        if (!is_number(content)) {
-            const glm::dvec3 color = glm::clamp(image::color_of(texture, texel), 0.0, 1.0);
-            for (int c = 0; c < 3; ++c)
-                to.pixels[i + static_cast<size_t>(c)] = static_cast<float>(color[c]);
-            to.pixels[i + 3] = content == PigmentContent::Leaf ? from.pixels[i + 3] : 1;
-        } else {
-            const double number = std::clamp(image::number_of(texture, texel), 0.0, 1.0);
-            for (size_t c = 0; c < 3; ++c)
-                to.pixels[i + c] = static_cast<float>(number);
-            to.pixels[i + 3] = 1;
-        }
-    }
-    from.pixels.clear();
-    const bool mask = halvings > 0 && content == PigmentContent::Alpha && is_mask(to);
-    if (halvings > 0)
-        to = image::reduced(to, halved(to.width, halvings), halved(to.height, halvings));
-    if (content == PigmentContent::Leaf)
-        image::spread_into_clear(to);
-    for (size_t i = 3; i < to.pixels.size(); i += 4)
-        to.pixels[i] = 1;  // POV-Ray would make holes
-    if (mask)
-        sharpen(to);
-    if (!is_number(content)) {
-        for (size_t i = 0; i < to.pixels.size(); ++i) {
-            if (i % 4 != 3)
-                to.pixels[i] = encode_srgb(to.pixels[i]);
-        }
-    }
-    return image::png_bytes(to, image::PngEffort::Quick);
 }
 
 /// Whether anything outside the picture is looked at.
@@ -345,7 +251,7 @@ void PictureWriter::write(PictureFolder& folder) const {
     for (const auto& [name, file] : files_)
         folder.add(name, [&file = file] {
             return file.as_is ? file.texture.picture->bytes
-                              : baked(file.texture, file.content, file.halvings);
+                              : pigment_picture(file.texture, file.content, file.halvings);
         });
 }
 
@@ -388,27 +294,6 @@ PictureFolder::PictureTotals PictureFolder::totals() const {
         totals.written += written ? 1u : 0u;
     }
     return totals;
-}
-
-double brightest_of(const Picture& picture) {
-    static std::mutex mutex;
-    static std::unordered_map<Hash, double> known;
-    if (picture.format != PictureFormat::Exr)
-        return 1;
-    {
-        const std::lock_guard lock(mutex);
-        const auto found = known.find(picture.hash);
-        if (found != known.end())
-            return found->second;
-    }
-    const image::Image image = image::decoded(picture);
-    double most = 1;
-    for (size_t i = 0; i < image.pixels.size(); ++i) {
-        if (i % 4 != 3)
-            most = std::max(most, static_cast<double>(image.pixels[i]));
-    }
-    const std::lock_guard lock(mutex);
-    return known[picture.hash] = most;
 }
 
 std::vector<std::string> pictures_named(std::string_view text) {

@@ -100,9 +100,6 @@ private:
 /// texture coordinates; 0 where each texel is to be seen.
 int halvings_of(const Texture& texture, double texel);
 
-/// The largest number of a picture that can hold more than 1 (EXR); else 1. Throws Error(BadFile).
-double brightest_of(const Picture& picture);
-
 /// The names of the files that file_comments() listed at the beginning of a text, and no others.
 std::vector<std::string> pictures_named(std::string_view text);
 

@@ -4,6 +4,7 @@
 #include "povray_export/scene/povray_number.h"
 #include "povray_export/texture/grazing_gloss.h"
 #include "povray_export/texture/height_map.h"
+#include "povray_export/texture/pigment_picture.h"
 #include "povray_export/texture/surface_finish.h"
 
 #include <glm/common.hpp>

@@ -2,6 +2,7 @@
 // Guards pictures on surfaces: what POV-Ray shows is what the texture's own sampler says.
 #include "povray/povray_scenes.h"
 #include "povray_export/scene/representation_writer.h"
+#include "povray_export/texture/pigment_picture.h"
 
 #include <limits>
 

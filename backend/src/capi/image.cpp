@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/image.h"
 
-#include "base/color.h"
 #include "base/files.h"
 #include "capi/guard.h"
 #include "image/compare_images.h"
 #include "image/compare_shown.h"
 #include "image/png_text.h"
+#include "image/texel_rows.h"
 
 #include <algorithm>
 #include <optional>
@@ -16,15 +16,16 @@ using namespace lodestone::capi;
 
 namespace {
 
-/// Linear light, associated alpha.
-image::Image linearized(image::Image picture) {
-    if (picture.linear)
-        return picture;
+/// A picture in linear light with associated alpha.
+image::Image linear_picture(const std::filesystem::path& path) {
+    image::PackedImage packed = image::read_packed(path);
+    if (packed.is_floats())
+        return image::unpacked(std::move(packed));
+    image::Image picture = all_texels(image::TexelRows(packed, ColorSpace::Srgb));
     for (size_t i = 0; i < picture.pixels.size(); i += 4) {
         for (size_t c = 0; c < 3; ++c)
-            picture.pixels[i + c] = decode_srgb(picture.pixels[i + c]) * picture.pixels[i + 3];
+            picture.pixels[i + c] *= picture.pixels[i + 3];
     }
-    picture.linear = true;
     return picture;
 }
 
@@ -58,7 +59,7 @@ lds_status lds_image_size(const char* path, int32_t* out_width, int32_t* out_hei
         require(path, "path");
         require(out_width, "out_width");
         require(out_height, "out_height");
-        const image::Image picture = image::read(path);
+        const image::PackedImage picture = image::read_packed(path);
         *out_width = picture.width;
         *out_height = picture.height;
     });
@@ -68,7 +69,7 @@ lds_status lds_image_read(const char* path, int32_t bottom_up, float* out_pixels
     return guard([&] {
         require(path, "path");
         require(out_pixels, "out_pixels");
-        copy_rows(linearized(image::read(path)), bottom_up != 0, out_pixels, capacity);
+        copy_rows(linear_picture(path), bottom_up != 0, out_pixels, capacity);
     });
 }
 

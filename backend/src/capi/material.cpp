@@ -3,7 +3,7 @@
 #include "base/files.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "image/baked_image.h"
+#include "image/bake/baked_image.h"
 #include "image/texture_sampler.h"
 
 #include <algorithm>
@@ -17,16 +17,18 @@ namespace {
 // Taste: a larger number lets larger pictures fill more memory.
 constexpr uint64_t kMostPictureBytes = uint64_t{1} << 30u;
 
-std::string bytes_of(const lds_picture& given, const std::string& name) {
+PicturePtr picture_of(const lds_picture& given, const std::string& name) {
+    const ColorSpace space = given.linear != 0 ? ColorSpace::Linear : ColorSpace::Srgb;
     const int sources = (given.path != nullptr ? 1 : 0) + (given.bytes != nullptr ? 1 : 0) +
                         (given.pixels != nullptr ? 1 : 0);
     if (sources != 1)
         fail(Status::InvalidArgument, "picture '", name,
              "': exactly one of path, bytes and pixels is to be given");
     if (given.path != nullptr)
-        return read_file(given.path, kMostPictureBytes);
+        return image::make_picture(read_file(given.path, kMostPictureBytes), space, name);
     if (given.bytes != nullptr)
-        return {static_cast<const char*>(given.bytes), given.byte_count};
+        return image::make_picture({static_cast<const char*>(given.bytes), given.byte_count}, space,
+                                   name);
     if (given.width < 1 || given.height < 1 ||
         static_cast<uint64_t>(given.width) * static_cast<uint64_t>(given.height) >
             image::kMostPixels)
@@ -36,11 +38,12 @@ std::string bytes_of(const lds_picture& given, const std::string& name) {
     image.width = given.width;
     image.height = given.height;
     const size_t row = static_cast<size_t>(given.width) * 4;
-    image.pixels.resize(row * static_cast<size_t>(given.height));
-    for (int y = 0; y < given.height; ++y)
-        std::copy_n(given.pixels + row * static_cast<size_t>(given.height - 1 - y), row,
-                    image.pixels.begin() + static_cast<std::ptrdiff_t>(row) * y);
-    return image::png_bytes(image);
+    image.pixels.reserve(row * static_cast<size_t>(given.height));
+    for (int y = given.height - 1; y >= 0; --y) {
+        const float* from = given.pixels + row * static_cast<size_t>(y);
+        image.pixels.insert(image.pixels.end(), from, from + row);
+    }
+    return image::make_picture(image::packed(image), image::PngEffort::Small, space, name);
 }
 
 Texture texture_of(const lds_model& model, const lds_texture& given, const std::string& owner) {
@@ -223,9 +226,7 @@ lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
         require(out_index, "out_index");
         const lds_picture given = checked(picture, "picture");
         const std::string name = name_of(given.name);
-        const PicturePtr made = image::make_picture(
-            bytes_of(given, name), given.linear != 0 ? ColorSpace::Linear : ColorSpace::Srgb, name);
-        *out_index = index_of(*model, made);
+        *out_index = index_of(*model, picture_of(given, name));
     });
 }
 

@@ -144,8 +144,8 @@ std::optional<BakedTexture> bake_recipe(const Recipe& recipe, ColorSpace space, 
                 m[2] += border[row] / outer[row];
             }
         }
-        baked.texture.picture =
-            image::make_picture(image::png_bytes(image), space, lead(recipe).picture->name);
+        baked.texture.picture = image::make_picture(image::packed(image), image::PngEffort::Small,
+                                                    space, lead(recipe).picture->name);
         return baked;
     } catch (const Error&) {
         return std::nullopt;

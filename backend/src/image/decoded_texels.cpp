@@ -15,17 +15,18 @@ namespace {
 /// Taste: a larger value lets more threads take such memory at once.
 constexpr size_t kLargePicture = size_t{1} << 24u;
 
-TexelsPtr with_sides(Image&& image, int most_side) {
+/// The texels of rows with at most `most_side` along a side.
+std::shared_ptr<DecodedTexels> with_sides(const TexelRows& rows, int most_side) {
     auto out = std::make_shared<DecodedTexels>();
-    const int step = (std::max(image.width, image.height) + most_side - 1) / most_side;
-    if (step > 1) {
-        image = reduced(image, (image.width + step - 1) / step, (image.height + step - 1) / step);
-        out->reduced = true;
-    }
+    const int step = (std::max(rows.width(), rows.height()) + most_side - 1) / most_side;
+    out->reduced = step > 1;
+    Image image = out->reduced ? reduced(rows, (rows.width() + step - 1) / step,
+                                         (rows.height() + step - 1) / step)
+                               : all_texels(rows);
     out->width = image.width;
     out->height = image.height;
     out->rgba = std::move(image.pixels);
-    out->least = glm::dvec4(out->rgba.empty() ? 0.0 : 1e30);
+    out->least = glm::dvec4(1e30);
     for (size_t i = 0; i < out->rgba.size(); i += 4)
         out->least = glm::min(out->least, glm::dvec4(out->rgba[i], out->rgba[i + 1],
                                                      out->rgba[i + 2], out->rgba[i + 3]));
@@ -35,23 +36,25 @@ TexelsPtr with_sides(Image&& image, int most_side) {
 }  // namespace
 
 TexelsPtr texels_of(const Picture& picture, int most_side) {
-    return with_sides(decoded(picture), most_side);
+    const PackedPtr image = packed(picture);
+    return with_sides(TexelRows(*image, picture.space), most_side);
+}
+
+TexelsPtr texels_of(const TexelRows& rows, int most_side) {
+    return with_sides(rows, most_side);
 }
 
 TexelsPtr texels_with_cutoff(const Texture& texture, double cutoff, int most_side) {
-    Image image = decoded(*texture.picture);
-    for (size_t i = 0; i < image.pixels.size(); i += 4) {
-        float* const at = image.pixels.data() + i;
-        const double number = number_of(texture, {at[0], at[1], at[2], at[3]});
-        std::fill(at, at + 3, number >= cutoff ? 1.0f : 0.0f);
-        at[3] = 1;  // equal weights for all texels
-    }
-    TexelsPtr out = with_sides(std::move(image), most_side);
-    auto gray = std::make_shared<DecodedTexels>(*out);
-    for (size_t i = 0; i < gray->rgba.size(); i += 4)
-        gray->rgba[i + 3] = gray->rgba[i];
-    gray->least = glm::dvec4(gray->least.x);
-    return gray;
+    const PackedPtr image = packed(*texture.picture);
+    // Alpha is 1: equal weights for all texels.
+    const TexelMap map =
+        number_map(texture, [cutoff](double number) { return number >= cutoff ? 1.0f : 0.0f; });
+    const std::shared_ptr<DecodedTexels> out =
+        with_sides(TexelRows(*image, texture.picture->space, map), most_side);
+    for (size_t i = 0; i < out->rgba.size(); i += 4)
+        out->rgba[i + 3] = out->rgba[i];
+    out->least = glm::dvec4(out->least.x);
+    return out;
 }
 
 template <typename Make>

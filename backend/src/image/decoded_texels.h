@@ -2,7 +2,7 @@
 // DecodedTexels: decoded pictures, made small by averaging and shared, for measuring.
 #pragma once
 
-#include "model/texture.h"
+#include "image/texel_rows.h"
 
 #include <glm/vec4.hpp>
 
@@ -29,6 +29,7 @@ using TexelsPtr = std::shared_ptr<const DecodedTexels>;
 /// The texels of a picture with at most `most_side` along a side, each the mean of a block (colors
 /// weighted by alpha). Throws Error(BadFile).
 TexelsPtr texels_of(const Picture& picture, int most_side);
+TexelsPtr texels_of(const TexelRows& rows, int most_side);
 
 /// The texels of a texture with a cutoff: every channel is the share of the block where the
 /// texture's number is at least `cutoff`. Means of the number itself would lose shapes thinner than

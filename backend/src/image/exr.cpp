@@ -198,8 +198,8 @@ void read_rows(Imf::InputFile& file, const PixelWindow& data, const PixelWindow&
     }
 }
 
-Image decode(std::string_view bytes, const std::string& name,
-             const std::optional<ImageRegion>& part) {
+PackedImage decode(std::string_view bytes, const std::string& name,
+                   const std::optional<ImageRegion>& part) {
     const ExrLayout layout = layout_of(bytes);
     check_layout(layout,
                  part ? std::numeric_limits<int64_t>::max() : static_cast<int64_t>(kMostPixels));
@@ -215,15 +215,15 @@ Image decode(std::string_view bytes, const std::string& name,
     if (channels.findChannel("RY") != nullptr)
         throw std::runtime_error("luminance and chroma are not read");
     const PixelWindow window = window_of(layout, part, name);
-    Image image;
+    PackedImage image;
     image.width = static_cast<int>(window.width());
     image.height = static_cast<int>(window.height());
-    image.linear = true;
-    image.pixels.resize(4 * image.size(), 0.0f);
-    read_rows(file, layout.data, window, gray, image.pixels);
+    image.depth = 32;
+    image.floats.resize(4 * image.size(), 0.0f);
+    read_rows(file, layout.data, window, gray, image.floats);
     const bool opaque = channels.findChannel("A") == nullptr;
-    for (size_t i = 0; i < image.pixels.size() && (gray || opaque); i += 4) {
-        float* pixel = image.pixels.data() + i;
+    for (size_t i = 0; i < image.floats.size() && (gray || opaque); i += 4) {
+        float* pixel = image.floats.data() + i;
         if (gray)
             pixel[1] = pixel[2] = pixel[0];
         if (opaque)
@@ -234,8 +234,8 @@ Image decode(std::string_view bytes, const std::string& name,
 
 }  // namespace
 
-Image decode_exr(std::string_view bytes, const std::string& name,
-                 const std::optional<ImageRegion>& part) {
+PackedImage decode_exr(std::string_view bytes, const std::string& name,
+                       const std::optional<ImageRegion>& part) {
     try {
         return decode(bytes, name, part);
     } catch (const std::bad_alloc&) {

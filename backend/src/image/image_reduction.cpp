@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
 
 namespace lodestone::image {
 namespace {
@@ -15,42 +16,124 @@ int begin_of(int index, int small, int count) {
     return static_cast<int>(static_cast<int64_t>(index) * count / small);
 }
 
+/// The sums of the texels of blocks that lie side by side, to which their rows are added.
+class BlockSums {
+public:
+    BlockSums(int width, int columns) {
+        for (int x = 0; x <= columns; ++x)
+            begins_.push_back(static_cast<size_t>(begin_of(x, columns, width)));
+        sums_.resize(static_cast<size_t>(columns));
+        plain_.resize(sums_.size());
+    }
+
+    void add(const float* row) {
+        ++rows_;
+        size_t clear = 0;
+        for (size_t x = 0; opaque_ && x < begins_.back(); ++x)
+            clear += row[4 * x + 3] != 1.0f ? 1u : 0u;
+        if (clear > 0) {  // up to here, plain sums are those by alpha
+            std::copy(sums_.begin(), sums_.end(), plain_.begin());
+            opaque_ = false;
+        }
+        for (size_t i = 0; i < sums_.size(); ++i)
+            opaque_ ? add_opaque(row, i) : add_by_alpha(row, i);
+    }
+
+    glm::dvec4 mean(size_t column) const {
+        const auto count = static_cast<double>(rows_ * (begins_[column + 1] - begins_[column]));
+        const glm::dvec4& sum = sums_[column];
+        return {sum.w > 0 ? glm::dvec3(sum) / sum.w : plain_[column] / count, sum.w / count};
+    }
+
+    /// Begins the next blocks.
+    void clear() {
+        rows_ = 0;
+        opaque_ = true;
+        std::fill(sums_.begin(), sums_.end(), glm::dvec4(0.0));
+    }
+
+private:
+    void add_opaque(const float* row, size_t column) {
+        glm::dvec4 sum = sums_[column];
+        for (const float* at = row + 4 * begins_[column]; at < row + 4 * begins_[column + 1];
+             at += 4)
+            sum += glm::dvec4(at[0], at[1], at[2], at[3]);
+        sums_[column] = sum;
+    }
+    void add_by_alpha(const float* row, size_t column) {
+        glm::dvec4 sum = sums_[column];
+        glm::dvec3 plain = plain_[column];
+        for (const float* at = row + 4 * begins_[column]; at < row + 4 * begins_[column + 1];
+             at += 4) {
+            const glm::dvec3 color(at[0], at[1], at[2]);
+            const auto alpha = static_cast<double>(at[3]);
+            sum += glm::dvec4(alpha * color, alpha);
+            plain += color;
+        }
+        sums_[column] = sum;
+        plain_[column] = plain;
+    }
+
+    std::vector<size_t> begins_;     // the first texel of each block, and the end
+    std::vector<glm::dvec4> sums_;   // of color times alpha, and alpha
+    std::vector<glm::dvec3> plain_;  // of color, from the first row on that is not opaque
+    size_t rows_ = 0;
+    bool opaque_ = true;
+};
+
+/// `row_at` gives the texels of a row of a picture of that size.
+template <typename Row>
+Image reduced_rows(int from_width, int from_height, int width, int height, const Row& row_at) {
+    Image to;
+    to.width = std::clamp(width, 1, std::max(1, from_width));
+    to.height = std::clamp(height, 1, std::max(1, from_height));
+    to.pixels.reserve(4 * to.size());
+    BlockSums sums(from_width, to.width);
+    int row = 0;
+    for (int y = 0; y < to.height; ++y) {
+        for (const int end = begin_of(y + 1, to.height, from_height); row < end; ++row)
+            sums.add(row_at(row));
+        for (size_t x = 0; x < static_cast<size_t>(to.width); ++x) {
+            const glm::dvec4 mean = sums.mean(x);
+            for (int c = 0; c < 4; ++c)
+                to.pixels.push_back(static_cast<float>(mean[c]));
+        }
+        sums.clear();
+    }
+    return to;
+}
+
 }  // namespace
 
 Image reduced(const Image& from, int width, int height) {
     Image to;
-    to.width = std::clamp(width, 1, std::max(1, from.width));
-    to.height = std::clamp(height, 1, std::max(1, from.height));
+    if (!from.pixels.empty())
+        to = reduced_rows(from.width, from.height, width, height, [&](int y) {
+            return from.pixels.data() +
+                   4 * static_cast<size_t>(y) * static_cast<size_t>(from.width);
+        });
     to.linear = from.linear;
-    to.pixels.resize(from.pixels.empty() ? 0 : 4 * to.size());
-    float* out = to.pixels.data();
-    for (int y = 0; y < to.height && !to.pixels.empty(); ++y) {
-        const int top = begin_of(y, to.height, from.height);
-        const int bottom = begin_of(y + 1, to.height, from.height);
-        for (int x = 0; x < to.width; ++x, out += 4) {
-            const int left = begin_of(x, to.width, from.width);
-            const int right = begin_of(x + 1, to.width, from.width);
-            glm::dvec4 sum(0.0);
-            glm::dvec3 plain(0.0);
-            for (int v = top; v < bottom; ++v) {
-                const float* at = from.pixels.data() +
-                                  4 * (static_cast<size_t>(v) * static_cast<size_t>(from.width) +
-                                       static_cast<size_t>(left));
-                for (int u = left; u < right; ++u, at += 4) {
-                    const glm::dvec3 color(at[0], at[1], at[2]);
-                    const auto alpha = static_cast<double>(at[3]);
-                    sum += glm::dvec4(alpha * color, alpha);
-                    plain += color;
-                }
-            }
-            const double count = static_cast<double>(bottom - top) * (right - left);
-            const glm::dvec3 color = sum.w > 0 ? glm::dvec3(sum) / sum.w : plain / count;
-            for (int c = 0; c < 3; ++c)
-                out[c] = static_cast<float>(color[c]);
-            out[3] = static_cast<float>(sum.w / count);
-        }
-    }
     return to;
+}
+
+Image reduced(const TexelRows& from, int width, int height) {
+    std::vector<float> row(4 * static_cast<size_t>(from.width()));
+    Image to = reduced_rows(from.width(), from.height(), width, height, [&](int y) {
+        from.read(y, row.data());
+        return row.data();
+    });
+    to.linear = true;
+    return to;
+}
+
+glm::dvec4 mean_of(const TexelRows& rows) {
+    BlockSums sums(rows.width(), 1);
+    std::vector<float> row(4 * static_cast<size_t>(rows.width()));
+    for (int y = 0; y < rows.height(); ++y) {
+        rows.read(y, row.data());
+        sums.add(row.data());
+    }
+    return sums.mean(0);
 }
 
 void spread_into_clear(Image& image) {

@@ -86,7 +86,7 @@ bool next_row(JpegReader& reader, unsigned char* row) {
 
 }  // namespace
 
-Image decode_jpeg(std::string_view bytes, const std::string& name) {
+PackedImage decode_jpeg(std::string_view bytes, const std::string& name) {
     JpegReader reader;
     if (!start(reader, bytes))
         fail(Status::BadFile, "'", name, "' is a broken JPEG: ", reader.complaint);
@@ -95,23 +95,15 @@ Image decode_jpeg(std::string_view bytes, const std::string& name) {
         fail(Status::BadFile, "'", name, "' is a CMYK JPEG; save it as RGB");
     if (space != JCS_GRAYSCALE && space != JCS_RGB && space != JCS_YCbCr)
         fail(Status::BadFile, "'", name, "' is a JPEG of an unknown color space");
-    Image image = blank_image(reader.jpeg.image_width, reader.jpeg.image_height, false, name);
-    reader.jpeg.out_color_space = space == JCS_GRAYSCALE ? JCS_GRAYSCALE : JCS_RGB;
+    const int channels = space == JCS_GRAYSCALE ? 1 : 3;
+    PackedImage image =
+        blank_packed(reader.jpeg.image_width, reader.jpeg.image_height, channels, 8, name);
+    reader.jpeg.out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
     if (!begin_rows(reader))
         fail(Status::BadFile, "'", name, "' is a broken JPEG: ", reader.complaint);
-    const auto width = static_cast<size_t>(image.width);
-    const size_t channels = space == JCS_GRAYSCALE ? 1 : 3;
-    std::vector<unsigned char> row(width * channels);
-    for (size_t y = 0; y < static_cast<size_t>(image.height); ++y) {
-        if (!next_row(reader, row.data()))
+    for (int y = 0; y < image.height; ++y) {
+        if (!next_row(reader, image.row(y)))
             fail(Status::BadFile, "'", name, "' is a broken JPEG: ", reader.complaint);
-        for (size_t x = 0; x < width; ++x) {
-            float* pixel = image.pixels.data() + 4 * (y * width + x);
-            for (size_t channel = 0; channel < 3; ++channel)
-                pixel[channel] =
-                    static_cast<float>(row[x * channels + (channels == 3 ? channel : 0)]) / 255.0f;
-            pixel[3] = 1;
-        }
     }
     return image;
 }

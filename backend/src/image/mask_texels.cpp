@@ -49,19 +49,20 @@ bool near_sure(const MaskTexels& texels, int x, int y) {
 }  // namespace
 
 MaskTexels mask_texels(const Texture& texture) {
-    const Picture& picture = *texture.picture;
-    // An alpha that is not associated is the same in all color spaces: decoding colors takes longer
-    // than the rest.
-    const Image image = texture.channel == TextureChannel::Alpha ? read(picture.bytes, picture.name)
-                                                                 : decoded(picture);
+    const PackedPtr image = packed(*texture.picture);
+    const TexelMap map = number_map(texture, [](double number) {
+        return static_cast<float>(std::isfinite(number) ? step_of(number) : uint8_t{0});
+    });
+    const TexelRows rows(*image, texture.picture->space, map);
     MaskTexels out;
-    out.width = image.width;
-    out.height = image.height;
-    out.alpha.resize(image.size());
-    for (size_t i = 0; i < out.alpha.size(); ++i) {
-        const float* at = image.pixels.data() + 4 * i;
-        const double number = number_of(texture, {at[0], at[1], at[2], at[3]});
-        out.alpha[i] = std::isfinite(number) ? step_of(number) : uint8_t{0};
+    out.width = image->width;
+    out.height = image->height;
+    out.alpha.reserve(image->size());
+    std::vector<float> row(4 * static_cast<size_t>(image->width));
+    for (int y = 0; y < image->height; ++y) {
+        rows.read(y, row.data());
+        for (size_t i = 0; i < row.size(); i += 4)
+            out.alpha.push_back(static_cast<uint8_t>(row[i]));
     }
     return out;
 }

@@ -75,7 +75,8 @@ struct PngReader {
     PngReader& operator=(const PngReader&) = delete;
 };
 
-/// Reads up to the first row; afterwards rows are RGBA of 8 or 16 bits. False: see the complaint.
+/// Reads up to the first row; afterwards rows have 8 or 16 bits a channel, with the file's gray, RGB
+/// and alpha, a palette's color and alpha. False: see the complaint.
 bool start(PngReader& reader) {
     if (setjmp(png_jmpbuf(reader.png)) != 0)  // NOLINT(cert-err52-cpp)
         return false;
@@ -85,8 +86,6 @@ bool start(PngReader& reader) {
     png_read_info(reader.png, reader.info);
     reader.packed_row = png_get_rowbytes(reader.png, reader.info);
     png_set_expand(reader.png);  // palettes, 1...4 bits and transparent colors
-    png_set_gray_to_rgb(reader.png);
-    png_set_add_alpha(reader.png, 0xffff, PNG_FILLER_AFTER);
     png_set_interlace_handling(reader.png);
     png_read_update_info(reader.png, reader.info);
     return true;
@@ -119,66 +118,58 @@ struct PngWriter {
     PngWriter& operator=(const PngWriter&) = delete;
 };
 
-bool write_rows(PngWriter& writer, png_bytepp rows, int width, int height, int channels,
-                PngEffort effort) {
+bool write_rows(PngWriter& writer, const PackedImage& image, PngEffort effort) {
     if (setjmp(png_jmpbuf(writer.png)) != 0)  // NOLINT(cert-err52-cpp)
         return false;
     png_set_write_fn(writer.png, &writer.bytes, on_write, on_flush);
     png_set_user_limits(writer.png, 1u << 26u, 1u << 26u);
-    png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(width),
-                 static_cast<png_uint_32>(height), 8,
-                 channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(image.width),
+                 static_cast<png_uint_32>(image.height), 8,
+                 image.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
     if (effort == PngEffort::Quick) {
         png_set_compression_level(writer.png, 1);
         png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
     }
     png_write_info(writer.png, writer.info);
-    png_write_image(writer.png, rows);
+    for (int y = 0; y < image.height; ++y)
+        png_write_row(writer.png, image.row(y));
     png_write_end(writer.png, writer.info);
     return true;
 }
 
 }  // namespace
 
-Image decode_png(std::string_view bytes, const std::string& name) {
+PackedImage decode_png(std::string_view bytes, const std::string& name) {
     PngReader reader(bytes);
     if (!start(reader))
         fail(Status::BadFile, "'", name, "' is a broken PNG: ", reader.complaint.text);
     const size_t width = png_get_image_width(reader.png, reader.info);
     const size_t height = png_get_image_height(reader.png, reader.info);
-    const size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
-    const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
-    if (row_bytes != width * (wide ? 8 : 4))
+    const int channels = png_get_channels(reader.png, reader.info);
+    const int depth = png_get_bit_depth(reader.png, reader.info);
+    if ((depth != 8 && depth != 16) || channels < 1 || channels > 4 ||
+        png_get_rowbytes(reader.png, reader.info) !=
+            width * static_cast<size_t>(channels) * static_cast<size_t>(depth / 8))
         fail(Status::BadFile, "'", name, "' is a PNG of an unknown layout");
     // Deflate shrinks at most 1032 times: a header that promises more lies, and is caught before
     // memory is spent on it.
     if (reader.packed_row * height / 1032 > bytes.size())
         fail(Status::BadFile, "'", name, "' is too short for ", width, " x ", height, " pixels");
-    Image image =
-        blank_image(static_cast<int64_t>(width), static_cast<int64_t>(height), false, name);
-    std::vector<unsigned char> data(row_bytes * height);
+    PackedImage image = blank_packed(static_cast<int64_t>(width), static_cast<int64_t>(height),
+                                     channels, depth, name);
     std::vector<png_bytep> rows(height);
     for (size_t y = 0; y < height; ++y)
-        rows[y] = data.data() + y * row_bytes;
+        rows[y] = image.row(static_cast<int>(y));
     if (!read_rows(reader, rows.data()))
         fail(Status::BadFile, "'", name, "' is a broken PNG: ", reader.complaint.text);
-    for (size_t i = 0; i < image.pixels.size(); ++i) {
-        image.pixels[i] = wide ? static_cast<float>((data[2 * i] << 8) | data[2 * i + 1]) / 65535.0f
-                               : static_cast<float>(data[i]) / 255.0f;
-    }
     return image;
 }
 
-std::string encode_png(const std::vector<unsigned char>& rows, int width, int height, int channels,
-                       PngEffort effort) {
+std::string encode_png(const PackedImage& image, PngEffort effort) {
     PngWriter writer;
-    std::vector<unsigned char> data = rows;  // libpng wants rows it could write to
-    std::vector<png_bytep> starts(static_cast<size_t>(height));
-    for (size_t y = 0; y < starts.size(); ++y)
-        starts[y] = data.data() + y * static_cast<size_t>(width) * static_cast<size_t>(channels);
-    if (!write_rows(writer, starts.data(), width, height, channels, effort))
+    if (!write_rows(writer, image, effort))
         fail(Status::Internal, "a PNG could not be made: ", writer.complaint.text);
     return std::move(writer.bytes);
 }

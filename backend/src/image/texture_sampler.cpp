@@ -2,33 +2,17 @@
 #include "image/texture_sampler.h"
 
 #include "base/color.h"
-#include "base/error.h"
+#include "image/image_reduction.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <mutex>
 #include <unordered_map>
 
 namespace lodestone::image {
 namespace {
-
-glm::dvec4 mean_of(const float* texels, size_t count) {
-    glm::dvec4 sum(0.0);
-    glm::dvec3 plain(0.0);
-    for (size_t i = 0; i < count; ++i, texels += 4) {
-        const glm::dvec3 color(texels[0], texels[1], texels[2]);
-        const auto alpha = static_cast<double>(texels[3]);
-        sum += glm::dvec4(alpha * color, alpha);
-        plain += color;
-    }
-    if (count == 0)
-        return sum;
-    const auto total = static_cast<double>(count);
-    return {sum.w > 0 ? glm::dvec3(sum) / sum.w : plain / total, sum.w / total};
-}
 
 PictureFormat format_of(std::string_view bytes) {
     using namespace std::string_view_literals;
@@ -79,61 +63,18 @@ struct PictureFacts {
     glm::dvec4 mean{0.0};
 };
 
-PictureFacts facts_of(const Picture& picture) {
-    const Image image = decoded(picture);
+PictureFacts facts_of(const PackedImage& image, const Picture& picture) {
     PictureFacts facts;
     facts.format = format_of(picture.bytes);
     facts.width = image.width;
     facts.height = image.height;
-    facts.mean = mean_of(image.pixels.data(), image.size());
+    facts.mean = mean_of(TexelRows(image, picture.space));
     return facts;
 }
 
-/// decode_srgb(), whose values for 8 bits, which nearly all pictures have, are looked up.
-float decode_srgb_texel(float encoded) {
-    // Law: decode_srgb() of each byte.
-    static const std::array<float, 256> kOfByte = [] {
-        std::array<float, 256> out{};
-        for (size_t i = 0; i < out.size(); ++i)
-            out[i] = decode_srgb(static_cast<float>(i) / 255.0f);
-        return out;
-    }();
-    if (encoded >= 0 && encoded <= 1) {
-        // Law: a byte comes back as its number or a little less.
-        const auto byte = static_cast<size_t>(encoded * 255.0f + 0.25f);
-        if (static_cast<float>(byte) / 255.0f == encoded)
-            return kOfByte[byte];
-    }
-    return decode_srgb(encoded);
-}
-
-}  // namespace
-
-Image decoded(const Picture& picture) {
-    Image image = read(picture.bytes, picture.name);
-    if (image.linear) {  // colors of an EXR are times alpha
-        for (size_t i = 0; i < image.pixels.size(); i += 4) {
-            const float alpha = image.pixels[i + 3];
-            if (alpha > 0 && alpha != 1) {
-                for (size_t c = 0; c < 3; ++c)
-                    image.pixels[i + c] /= alpha;
-            }
-        }
-    } else if (picture.space == ColorSpace::Srgb) {
-        for (size_t i = 0; i < image.pixels.size(); i += 4) {
-            for (size_t c = 0; c < 3; ++c)
-                image.pixels[i + c] = decode_srgb_texel(image.pixels[i + c]);
-        }
-    }
-    image.linear = true;
-    for (float& value : image.pixels) {
-        if (!std::isfinite(value))
-            value = 0;
-    }
-    return image;
-}
-
-PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& name) {
+/// The picture of a file's bytes, of which the pixels are known, or none.
+PicturePtr picture_of(std::string bytes, const PackedImage* pixels, ColorSpace space,
+                      const std::string& name) {
     static std::mutex mutex;
     static std::unordered_map<Hash, PictureFacts> known;
     auto picture = std::make_shared<Picture>();
@@ -145,7 +86,8 @@ PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& 
     auto found = known.find(picture->hash);
     if (found == known.end()) {
         lock.unlock();
-        const PictureFacts facts = facts_of(*picture);
+        const PictureFacts facts =
+            pixels != nullptr ? facts_of(*pixels, *picture) : facts_of(*packed(*picture), *picture);
         lock.lock();
         found = known.emplace(picture->hash, facts).first;
     }
@@ -154,6 +96,22 @@ PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& 
     picture->height = found->second.height;
     picture->mean = found->second.mean;
     return picture;
+}
+
+}  // namespace
+
+Image decoded(const Picture& picture) {
+    const PackedPtr image = packed(picture);
+    return all_texels(TexelRows(*image, picture.space));
+}
+
+PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& name) {
+    return picture_of(std::move(bytes), nullptr, space, name);
+}
+
+PicturePtr make_picture(const PackedImage& pixels, PngEffort effort, ColorSpace space,
+                        const std::string& name) {
+    return picture_of(png_bytes(pixels, effort), &pixels, space, name);
 }
 
 glm::dvec3 color_of(const Texture& texture, const glm::dvec4& texel) {

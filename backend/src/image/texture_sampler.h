@@ -3,14 +3,15 @@
 #pragma once
 
 #include "image/decoded_texels.h"
-#include "image/image.h"
+#include "image/packed_cache.h"
+#include "image/texel_rows.h"
 
 #include <glm/vec4.hpp>
 
 namespace lodestone::image {
 
 /// The decoded picture: linear color when its space is Srgb, else its numbers; straight alpha.
-/// Errors call it by the picture's name. Throws Error(BadFile).
+/// It takes four to sixteen times the memory of packed(). Throws as that.
 Image decoded(const Picture& picture);
 
 /// The largest file of a picture in bytes.
@@ -21,6 +22,9 @@ inline constexpr uint64_t kMostFileBytes = uint64_t{1} << 30u;
 /// for the life of the process, so a second time costs the hash only. Throws Error(BadFile) calling
 /// it `name` when it is no PNG, JPEG or OpenEXR. May be called from any thread.
 PicturePtr make_picture(std::string bytes, ColorSpace space, const std::string& name);
+/// The picture of a PNG that is made of pixels of 8 bits, RGB or RGBA, and so is not decoded.
+PicturePtr make_picture(const PackedImage& pixels, PngEffort effort, ColorSpace space,
+                        const std::string& name);
 
 /// The value of a texture for a texel: as a color, and where one number is wanted.
 glm::dvec3 color_of(const Texture& texture, const glm::dvec4& texel);

@@ -46,23 +46,24 @@ struct SkyTexel {
 
 class EnvironmentSky {
 public:
-    EnvironmentSky(const World& world, const image::Image& picture)
+    EnvironmentSky(const World& world, const image::TexelRows& picture)
         : width_(kWidth), height_(kHeight) {
-        width_ = std::min(kWidth, picture.width);
-        height_ = std::min(kHeight, picture.height);
+        width_ = std::min(kWidth, picture.width());
+        height_ = std::min(kHeight, picture.height());
         const bool turned = std::abs(glm::determinant(world.environment_turn)) > 1e-12;
         const glm::dmat3 to_world = turned ? glm::inverse(world.environment_turn) : glm::dmat3(1.0);
         texels_.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_));
         for (int y = 0; y < height_; ++y) {
             const double low = kPi * y / height_;  // the angle from the zenith
             const double high = kPi * (y + 1) / height_;
+            const std::vector<glm::dvec3> means = means_of(picture, y);
             for (int x = 0; x < width_; ++x) {
                 SkyTexel& texel = at(x, y);
                 const glm::dvec3 own =
                     equirectangular_direction((x + 0.5) / width_, 1 - (y + 0.5) / height_);
                 texel.direction = glm::normalize(to_world * own);
                 texel.solid_angle = (std::cos(low) - std::cos(high)) * 2 * kPi / width_;
-                texel.radiance = mean_of(picture, x, y) * world.environment_strength;
+                texel.radiance = means[static_cast<size_t>(x)] * world.environment_strength;
             }
         }
     }
@@ -100,29 +101,33 @@ public:
     }
 
 private:
-    /// The mean of the picture's pixels that a texel covers.
-    glm::dvec3 mean_of(const image::Image& picture, int x, int y) const {
+    /// The means of the picture's pixels that the texels of a row cover.
+    std::vector<glm::dvec3> means_of(const image::TexelRows& picture, int y) const {
         const auto begin = [](int at, int count, int size) {
             return static_cast<int>(static_cast<int64_t>(at) * size / count);
         };
-        glm::dvec3 sum(0.0);
-        double count = 0;
-        for (int row = begin(y, height_, picture.height);
-             row < begin(y + 1, height_, picture.height); ++row) {
-            for (int column = begin(x, width_, picture.width);
-                 column < begin(x + 1, width_, picture.width); ++column) {
-                const float* pixel =
-                    picture.pixels.data() +
-                    4 * (static_cast<size_t>(row) * static_cast<size_t>(picture.width) +
-                         static_cast<size_t>(column));
-                for (int c = 0; c < 3; ++c) {
-                    const auto value = static_cast<double>(pixel[c]);
-                    sum[c] += value > 0 ? std::min(value, kMost) : 0.0;  // false for a nan
+        std::vector<glm::dvec3> sums(static_cast<size_t>(width_), glm::dvec3(0.0));
+        std::vector<double> counts(sums.size(), 0.0);
+        std::vector<float> pixels(4 * static_cast<size_t>(picture.width()));
+        for (int row = begin(y, height_, picture.height());
+             row < begin(y + 1, height_, picture.height()); ++row) {
+            picture.read(row, pixels.data());
+            for (int x = 0; x < width_; ++x) {
+                glm::dvec3& sum = sums[static_cast<size_t>(x)];
+                for (int column = begin(x, width_, picture.width());
+                     column < begin(x + 1, width_, picture.width()); ++column) {
+                    const float* pixel = pixels.data() + 4 * static_cast<size_t>(column);
+                    for (int c = 0; c < 3; ++c) {
+                        const auto value = static_cast<double>(pixel[c]);
+                        sum[c] += value > 0 ? std::min(value, kMost) : 0.0;  // false for a nan
+                    }
+                    ++counts[static_cast<size_t>(x)];
                 }
-                ++count;
             }
         }
-        return sum / std::max(count, 1.0);
+        for (size_t x = 0; x < sums.size(); ++x)
+            sums[x] /= std::max(counts[x], 1.0);
+        return sums;
     }
 
     int width_;
@@ -298,7 +303,8 @@ EnvironmentLights environment_lights(const World& world, size_t count) {
     EnvironmentLights out;
     if (!world.environment)
         return out;
-    EnvironmentSky sky(world, image::decoded(*world.environment));
+    const image::PackedPtr picture = image::packed(*world.environment);
+    EnvironmentSky sky(world, image::TexelRows(*picture, world.environment->space));
     out.ambient = sky.take_uniform();
     std::vector<SkyRegion> regions{{0, 0, sky.width(), sky.height()}};
     regions[0].brightness = brightness(sky, regions[0]);

@@ -2,7 +2,7 @@
 // Guards baked pictures: every operation's known answer, where texels come from, hostile steps.
 #include "base/error.h"
 #include "base/parallel.h"
-#include "image/baked_image.h"
+#include "image/bake/baked_image.h"
 #include "image/texture_sampler.h"
 
 #include <gtest/gtest.h>
