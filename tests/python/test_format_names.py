@@ -13,7 +13,7 @@ TEXTS = (
     "backend/python/lodestone_native/model.py",
     "backend/tools/verbs.cpp",
 )
-ENDING = r"\.[a-z]{3,4}\b"
+ENDING = r"\.(?=\d*[a-z])[a-z\d]{1,6}\b"
 LIST = re.compile(rf"{ENDING}(?:(?:, (?:or |and )?| or | and )(?:a )?{ENDING})+")
 
 
@@ -25,6 +25,9 @@ class Formats(unittest.TestCase):
         with Model() as model, self.assertRaisesRegex(LodestoneError, "is not written") as caught:
             model.write("a.nothing")
         self.written = set(re.findall(ENDING, str(caught.exception).split("only")[1]))
+
+    def test_endings_with_digits_and_short_ones_were_not_seen(self):
+        self.assertEqual(re.findall(ENDING, "x.3mf, .x3d or .o; 0.125 m"), [".3mf", ".x3d", ".o"])
 
     def test_what_is_written_is_read(self):
         self.assertLess(self.written, self.read)
