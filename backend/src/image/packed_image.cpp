@@ -125,4 +125,8 @@ std::string png_bytes(const PackedImage& image, PngEffort effort) {
     return encode_png(image, effort);
 }
 
+PackedPtr packed(const Picture& picture) {
+    return std::make_shared<const PackedImage>(read_packed(picture.bytes, picture.name));
+}
+
 }  // namespace lodestone::image

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "image/image.h"
+#include "model/picture.h"
 
 #include <cstdint>
 #include <memory>
@@ -35,6 +36,11 @@ struct PackedImage {
     unsigned char* row(int y) { return bytes.get() + static_cast<size_t>(y) * row_bytes(); }
 };
 
+/// A decoded picture that is shared; it never changes once made.
+using PackedPtr = std::shared_ptr<const PackedImage>;
+
+/// The picture as its file holds it. Errors call it by its name. Throws Error(BadFile).
+PackedPtr packed(const Picture& picture);
 /// Reads a picture from memory, as read() does and with its errors.
 PackedImage read_packed(std::string_view bytes, const std::string& name);
 /// Reads a picture file.

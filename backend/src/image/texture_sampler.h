@@ -3,7 +3,7 @@
 #pragma once
 
 #include "image/decoded_texels.h"
-#include "image/packed_cache.h"
+#include "image/packed_image.h"
 #include "image/texel_rows.h"
 
 #include <glm/vec4.hpp>
