@@ -31,7 +31,7 @@ double variance_along_x(Image& image) {
     double squares = 0;
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
-            const double away = x - image.width / 2;
+            const double away = x - (image.width - 1) / 2.0;
             sum += static_cast<double>(red(image, x, y));
             squares += away * away * static_cast<double>(red(image, x, y));
         }
