@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace lodestone::light {
 namespace {
@@ -48,6 +49,10 @@ double display_steps(const glm::dvec3& all, const glm::dvec3& part) {
     return steps;
 }
 
+/// The most rays along an edge that a point asks for.
+/// Taste: far more than any grid has; a larger value changes nothing.
+constexpr int kMostRays = 1025;
+
 /// The rays along an edge that a light needs at one kind of difference, over the points of a region.
 class GridNeed {
 public:
@@ -63,8 +68,10 @@ public:
         const double steps = display_steps(all, part) / step_;
         const double pixels = penumbra_at(light_, view_, point.position) / narrowest_;
         // A row of rays too few is half a step off.
-        penumbrae_.push_back(
-            pixels > 1 ? std::min(std::max(2.0, pixels / kPenumbraeOfRay), steps / 2) : 1);
+        const double rays =
+            pixels > 1 ? std::min(std::max(2.0, pixels / kPenumbraeOfRay), steps / 2) : 1;
+        ++points_by_rays_[grid_rays(rays, kMostRays)];
+        ++points_;
         // The middles of n parts of a width w at the distance d give the light of all of it to
         // about (w / (n d))^2 / 4 of it.
         const double distance = std::max(glm::length(light_.position - point.position), 1e-9);
@@ -79,10 +86,11 @@ public:
                                2 * extent_ * distance / (nearest * nearest) * std::sqrt(steps / 2));
     }
 
-    LampGrid grid(int most) {
+    LampGrid grid(int most) const {
         LampGrid out;
         const bool parts = light_.kind != LightKind::Point;
-        out.rays = grid_rays(std::max(nearly_largest(penumbrae_), parts ? spread_ : 0.0), most);
+        out.rays = grid_rays(
+            std::max(static_cast<double>(rays_of_penumbrae()), parts ? spread_ : 0.0), most);
         // The edge of a cone is as soft as a shadow's.
         const bool cone = light_.kind == LightKind::Spot || light_.spread > 0;
         out.parts = parts && out.rays > 1 && (cone || spread_ > 1);
@@ -90,13 +98,25 @@ public:
     }
 
 private:
+    /// The rays that all points ask for but a few.
+    int rays_of_penumbrae() const {
+        auto stepped = static_cast<size_t>(kSteppedShare * static_cast<double>(points_));
+        for (auto at = points_by_rays_.rbegin(); at != points_by_rays_.rend(); ++at) {
+            if (stepped < at->second)
+                return at->first;
+            stepped -= at->second;
+        }
+        return 1;
+    }
+
     const Light& light_;
     const View& view_;
     double extent_;
     double narrowest_;
     double step_;
     double apart_;
-    std::vector<double> penumbrae_;  // the rays along an edge that each point asks for
+    std::map<int, size_t> points_by_rays_;  // by the rays along an edge that they ask for
+    size_t points_ = 0;
     double spread_ = 0;
 };
 

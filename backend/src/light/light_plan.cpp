@@ -47,7 +47,7 @@ constexpr size_t kMostLamps = 20000;
 // Taste: with more of them, each an area with 81 rays or more, no picture is finished.
 constexpr size_t kMostUnchosen = 64;
 // The rays that POV-Ray casts to a light that lights a point, where many points face away from it.
-// Fitted: 2.2 and 1.5 in night_street and night_tree of tests/bench/scenes, 1.5 in the street.
+// Fitted: 2.4 and 1.3 in night_street and night_tree of tests/bench/scenes.
 constexpr double kRaysOfLamp = 2;
 // The most distinct triangles.
 // Taste: each takes 130 bytes while lights are chosen.

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 namespace lodestone::light {
@@ -70,17 +69,6 @@ double widest_penumbra(const Light& light, const View& view, std::span<const Bou
 double penumbra_at(const Light& lamp, const View& view, const glm::dvec3& point) {
     const double z = glm::length(point - view.camera.position);
     return kMagnified * 2 * extent_of(lamp) / choose::pixel_size(view, z);
-}
-
-double nearly_largest(std::vector<double>& values) {
-    // The share of values that may be larger.
-    // Taste: a larger value draws more shadows sharp.
-    constexpr double kLarger = 0.01;
-    if (values.empty())
-        return 0;
-    const auto larger = static_cast<ptrdiff_t>(kLarger * static_cast<double>(values.size()));
-    std::nth_element(values.begin(), values.begin() + larger, values.end(), std::greater<>());
-    return values[static_cast<size_t>(larger)];
 }
 
 }  // namespace lodestone::light

@@ -7,7 +7,6 @@
 #include "model/view.h"
 
 #include <span>
-#include <vector>
 
 namespace lodestone::light {
 
@@ -16,9 +15,9 @@ namespace lodestone::light {
 /// shows steps.
 inline constexpr double kPenumbraeOfRay = 3;
 
-/// The largest of the values but for a hundredth of them, whose shadows may have steps; 0 of none.
-/// Their order is lost.
-double nearly_largest(std::vector<double>& values);
+/// The share of points whose shadows may have steps, for their penumbrae are wider than others.
+/// Taste: a larger value draws more shadows sharp.
+inline constexpr double kSteppedShare = 0.01;
 
 /// The widest penumbra, in pixels, that a light gives in a view of these occluders (world frame).
 /// Sun: a thing that rises h above the lowest point of all throws its shadow at most h /

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace lodestone::light {
 namespace {
@@ -33,7 +34,12 @@ double narrowest(const GridDemands& demands) {
 
 /// The fewest rays along an edge for penumbrae of these widths, in pixels: 1, 2, or 2^n + 1.
 int rays_for(std::vector<double>& widths, double step, int most) {
-    const double steps = nearly_largest(widths) / step;
+    if (widths.empty())
+        return 1;
+    const auto wider = static_cast<size_t>(kSteppedShare * static_cast<double>(widths.size()));
+    std::nth_element(widths.begin(), widths.begin() + static_cast<ptrdiff_t>(wider), widths.end(),
+                     std::greater<>());
+    const double steps = widths[wider] / step;
     return steps > 1 ? grid_rays(std::max(2.0, steps / kPenumbraeOfRay), most) : 1;
 }
 
