@@ -52,7 +52,7 @@ private:
     bool temporary_;
 };
 
-/// Pixels.
+/// The size of the pixel filter, in pixels.
 /// Law: Blender's own default.
 constexpr double kFilterSize = 1.5;
 

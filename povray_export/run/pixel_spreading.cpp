@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/run/pixel_spreading.h"
 
-#include "base/color.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "image/pixel_filter.h"
+#include "image/texel_rows.h"
 
 #include <algorithm>
 #include <charconv>
@@ -33,33 +33,26 @@ image::ImageRegion drawn_part(const std::string& settings, const image::Image& i
     return {left - 1, top - 1, std::max(1, right - left + 1), std::max(1, bottom - top + 1)};
 }
 
-/// A picture that displays show as linear light with associated alpha.
-void make_linear(image::Image& image) {
-    if (image.linear)
-        return;
-    for (size_t i = 0; i < image.pixels.size(); i += 4) {
-        for (size_t c = 0; c < 3; ++c)
-            image.pixels[i + c] = image.pixels[i + 3] * decode_srgb(image.pixels[i + c]);
-    }
-    image.linear = true;
-}
-
 }  // namespace
 
 void spread_picture(const std::filesystem::path& picture, OutputFormat format, double variance,
                     const std::filesystem::path& settings) {
-    // Taste: a sentence or two a setting; a larger value lets a broken file take more memory.
+    // Taste: a hundred times what is written; a larger value lets a broken file take more memory.
     constexpr uint64_t kMostSettings = 1u << 20u;
     if (!(variance > 0) || format == OutputFormat::Ppm)
         return;
+    const std::string drawn = read_file(settings, kMostSettings);
+    const auto pixels =
+        static_cast<double>(setting(drawn, "Width", 1)) * setting(drawn, "Height", 1);
+    if (pixels > static_cast<double>(image::kMostPixels))
+        return;
     image::Image image;
     try {
-        image = image::read(picture);
+        image = image::linear_picture(picture);
     } catch (const Error& error) {
         fail(Status::PovrayFailed, "POV-Ray's picture cannot be read: ", error.what());
     }
-    make_linear(image);
-    image::spread_pixels(image, variance, drawn_part(read_file(settings, kMostSettings), image));
+    image::spread_pixels(image, variance, drawn_part(drawn, image));
     write_file(picture, format == OutputFormat::Exr
                             ? image::exr_bytes(image)
                             : image::png_bytes(image, image::PngEffort::Small));

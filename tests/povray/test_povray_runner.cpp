@@ -324,6 +324,13 @@ TEST(PovrayRunner, AFinishedPictureIsSpreadByItsFilter) {
         EXPECT_NEAR(red(part, x, 2), 1, 1e-3);
 }
 
+TEST(PovrayRunner, PostersWereRefusedForTheirFilter) {
+    const auto folder = scene_with("poster", kSphere, "Width=20000\nHeight=20000\n");
+    const std::string program = script(folder, "echo drawn > ${2#+O}\n");
+    const RunReport report = render_scene({.folder = folder, .program = program, .spread = 0.1});
+    EXPECT_EQ(read_file(report.picture), "drawn\n");  // nobody tried to read so much
+}
+
 TEST(PovrayRunner, AFailingSceneGivesPovraysOwnSentence) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no POV-Ray";

@@ -16,19 +16,6 @@ using namespace lodestone::capi;
 
 namespace {
 
-/// A picture in linear light with associated alpha.
-image::Image linear_picture(const std::filesystem::path& path) {
-    image::PackedImage packed = image::read_packed(path);
-    if (packed.is_floats())
-        return image::unpacked(std::move(packed));
-    image::Image picture = all_texels(image::TexelRows(packed, ColorSpace::Srgb));
-    for (size_t i = 0; i < picture.pixels.size(); i += 4) {
-        for (size_t c = 0; c < 3; ++c)
-            picture.pixels[i + c] *= picture.pixels[i + 3];
-    }
-    return picture;
-}
-
 lds_difference difference_of(const image::ImageDifference& difference) {
     lds_difference out{};
     out.mean = difference.mean;
@@ -69,7 +56,7 @@ lds_status lds_image_read(const char* path, int32_t bottom_up, float* out_pixels
     return guard([&] {
         require(path, "path");
         require(out_pixels, "out_pixels");
-        copy_rows(linear_picture(path), bottom_up != 0, out_pixels, capacity);
+        copy_rows(image::linear_picture(path), bottom_up != 0, out_pixels, capacity);
     });
 }
 

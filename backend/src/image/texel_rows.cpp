@@ -202,6 +202,18 @@ Image unpacked(PackedImage&& image) {
     return out;
 }
 
+Image linear_picture(const std::filesystem::path& path) {
+    PackedImage packed = read_packed(path);
+    if (packed.is_floats())
+        return unpacked(std::move(packed));
+    Image picture = all_texels(TexelRows(packed, ColorSpace::Srgb));
+    for (size_t i = 0; i < picture.pixels.size(); i += 4) {
+        for (size_t c = 0; c < 3; ++c)
+            picture.pixels[i + c] *= picture.pixels[i + 3];
+    }
+    return picture;
+}
+
 PackedImage packed_colors(const TexelRows& rows) {
     PackedImage out = blank_packed(rows.width(), rows.height(), 3, 8, "a picture");
     std::vector<float> row(4 * static_cast<size_t>(rows.width()));

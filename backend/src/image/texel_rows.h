@@ -54,6 +54,8 @@ private:
 Image all_texels(const TexelRows& rows);
 /// The picture's numbers.
 Image unpacked(PackedImage&& image);
+/// A picture file in linear light with associated alpha. Throws as read().
+Image linear_picture(const std::filesystem::path& path);
 /// All rows in 8 bits, RGB: alpha is left out.
 PackedImage packed_colors(const TexelRows& rows);
 
