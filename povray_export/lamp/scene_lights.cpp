@@ -6,6 +6,8 @@
 #include "povray_export/scene/povray_number.h"
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 namespace lodestone::povray {
 
@@ -75,6 +77,29 @@ std::string grouped_text(const light::LightPlan& plan,
             own.empty() ? objects[i] : "light_group{\n" + own + objects[i] + "global_lights on}\n";
     }
     return out;
+}
+
+void name_slow_lamps(const light::LightPlan& plan, Problems& problems) {
+    // The shadow rays to lamps from a point, on average.
+    // Taste: with fewer, other things take most of the time.
+    constexpr double kMany = 40;
+    const double rays = light::mean_lamp_rays(plan);
+    if (!(rays >= kMany))
+        return;
+    std::set<uint32_t> soft;
+    for (const std::vector<light::GroupLight>& group : plan.groups) {
+        for (const light::GroupLight& one : group) {
+            if (one.grid.rays > 1)
+                soft.insert(one.light);
+        }
+    }
+    if (soft.empty())
+        return;
+    problems.push_back(
+        {"", Severity::Info, "slow_lamps",
+         text(soft.size(), " lights with soft shadows: from each point of the picture about ",
+              std::lround(rays),
+              " shadow rays go to lamps; fewer Area Samples or larger Lights take less time")});
 }
 
 }  // namespace lodestone::povray

@@ -51,4 +51,7 @@ std::string grouped_text(const light::LightPlan& plan,
                          const std::map<light::GroupLight, std::string>& names,
                          const std::vector<std::string>& objects);
 
+/// Names lights that make a picture slow: lamps, and those that stand for several.
+void name_slow_lamps(const light::LightPlan& plan, Problems& problems);
+
 }  // namespace lodestone::povray

@@ -33,7 +33,6 @@ CutMesh cut_masks(const Model& model, const Representation& representation,
 struct CutForecast {
     bool by_outline = false;  // `outline` of the options matters: some mask is cut by it
     uint64_t triangles = 0;   // about what all masks become, or are trimmed to
-    Hash outlines = 0;        // those they are cut by: with the same ones the result is the same
 };
 /// Throws as cut_masks().
 CutForecast cut_forecast(const Model& model, const Representation& representation,

@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "image/image.h"
+#include "light/clear_materials.h"
 #include "povray_export/mesh/uv_extent.h"
 
 #include <glm/common.hpp>
@@ -88,8 +89,9 @@ MeshTextures::MeshTextures(const Model& model, const Representation& representat
       cut_(cut),
       shown_(cut.any ? cut.mesh : mesh_),
       job_(job),
-      sky_(options.sky) {
-    find_slots(model, representation, options.uvs && !mesh_.uvs.empty(), options.few_textures);
+      sky_(options.sky),
+      uses_normals_(!options.only_shadows) {
+    find_slots(model, representation, options);
     if (uses_uvs_)
         find_ranges();
     if (uses_uvs_ && options.texel)
@@ -132,8 +134,9 @@ void MeshTextures::check_job_sometimes(size_t i) const {
         job_.check();
 }
 
-void MeshTextures::find_slots(const Model& model, const Representation& representation, bool uvs,
-                              bool few_textures) {
+void MeshTextures::find_slots(const Model& model, const Representation& representation,
+                              const RepresentationOptions& options) {
+    const bool uvs = options.uvs && !mesh_.uvs.empty();
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
         const uint16_t number = mesh_.slot(i);
         if (i > 0 && number == mesh_.slot(i - 1))
@@ -158,11 +161,13 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
             slot.material.alpha_mode = AlphaMode::Opaque;
             slot.material.alpha_texture = {};
         }
+        if (options.only_shadows && !light::lets_light_through(slot.material))
+            slot.material = {};
         for (const Material* m = &slot.material; m != nullptr; m = m->other.get())
             slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
         slot.surface.uvs = uvs && textured(slot.material);
-        slot.even_sky = few_textures || rays_go_on(slot.material, slot.surface.uvs);
-        slot.surface.layered = !few_textures;
+        slot.even_sky = options.few_textures || rays_go_on(slot.material, slot.surface.uvs);
+        slot.surface.layered = !options.few_textures && !options.only_shadows;
         uses_uvs_ = uses_uvs_ || slot.surface.uvs;
         slot.bumped = slot.surface.uvs && bumpy(slot.material);
         slots_.push_back(std::move(slot));

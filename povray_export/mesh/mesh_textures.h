@@ -36,6 +36,8 @@ public:
     /// The texts of the textures, by number.
     const std::vector<std::string>& texts() const { return texts_; }
     bool uses_uvs() const { return uses_uvs_; }
+    /// Whether corners' normals are seen.
+    bool uses_normals() const { return uses_normals_; }
     /// The index of refraction of what light goes through (the largest of the slots'); 0: nothing.
     double refraction() const { return refraction_; }
 
@@ -63,8 +65,8 @@ private:
         size_t text = 0;             // where it is neither
     };
 
-    void find_slots(const Model& model, const Representation& representation, bool uvs,
-                    bool few_textures);
+    void find_slots(const Model& model, const Representation& representation,
+                    const RepresentationOptions& options);
     void find_ranges();
     void find_texels(double metres);
     void find_planes();
@@ -89,6 +91,7 @@ private:
     std::vector<uint8_t> plane_of_;
     std::vector<uint32_t> corners_;  // 3 a triangle that is left; empty: the slots' texts
     bool uses_uvs_ = false;
+    bool uses_normals_ = true;
     bool bumps_left_out_ = false;
     double refraction_ = 0;
 };

@@ -170,7 +170,8 @@ private:
 
     void keep_triangles() {
         std::vector<uint8_t> used(mesh_.positions.size(), 0);
-        const bool normals = !mesh_.normals.empty();
+        const bool normals =
+            !mesh_.normals.empty() && (textures_ == nullptr || textures_->uses_normals());
         for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
             check_job_sometimes(i);
             const Triangle& t = mesh_.triangles[i];

@@ -68,26 +68,34 @@ int exponent_of(double texel) {
 
 size_t IncludeFiles::add(const Representation& representation, const RepresentationOptions& options,
                          double outline) {
-    // The steps of outlines whose uses share a file.
-    // Taste: a larger value writes fewer files, and cuts far things as finely as nearer ones.
-    constexpr int kShared = 4;
-    RepresentationOptions own = options;
-    const bool masked = options.textures && shows(representation, options, may_be_mask);
+    const auto [at, fresh] = known_.try_emplace(file_hash(representation, options), files_.size());
     const int step = outline_step(outline);
-    if (masked)
-        own.outline = (step - (step % kShared + kShared) % kShared);
-    const auto [at, fresh] = known_.try_emplace(file_hash(representation, own), files_.size());
     if (fresh) {
-        files_.emplace_back().representation = &representation;
-        files_.back().options = own;
-        if (masked)
-            files_.back().options.outline = step;
-        files_.back().pictured = options.textures && shows(representation, options, textured);
+        IncludeFile& include = files_.emplace_back();
+        include.representation = &representation;
+        include.options = options;
+        if (options.textures && shows(representation, options, may_be_mask))
+            include.options.outline = step;
+        include.pictured = options.textures && shows(representation, options, textured);
     }
     std::optional<int>& least = files_[at->second].options.outline;
     if (least)
         least = std::min(*least, step);
     return at->second;
+}
+
+bool IncludeFiles::varies(size_t index) const {
+    const IncludeFile& include = files_[index];
+    return include.options.outline || (include.pictured && !include.options.only_shadows);
+}
+
+void IncludeFiles::set_bands(size_t index, DetailBandsPtr bands, double outline, double texel) {
+    IncludeFile& include = files_[index];
+    if (include.options.outline) {
+        include.options.outline = outline_step(outline);
+        include.options.bands = bands->even() ? nullptr : std::move(bands);
+    }
+    include.texel = texel;
 }
 
 void IncludeFiles::note_texel(size_t index, double texel) {
@@ -129,31 +137,36 @@ CutForecast IncludeFiles::forecast(Hash name, const IncludeFile& include, const 
     const std::filesystem::path path = folder_ / "r" / (hex16(name) + ".cut");
     CutForecast out;
     std::ifstream kept(path);
-    if (kept >> out.by_outline >> out.triangles >> out.outlines)
+    if (kept >> out.by_outline >> out.triangles)
         return out;
     out = cut_forecast(model_, *include.representation, include.options, outlines_, job);
-    write_file(path, text(out.by_outline ? 1 : 0, ' ', out.triangles, ' ', out.outlines, '\n'));
+    write_file(path, text(out.by_outline ? 1 : 0, ' ', out.triangles, '\n'));
     return out;
 }
 
-/// Gives files of one mesh that are cut by the same outlines the same options, the finest ones.
-void IncludeFiles::share_outlines() {
-    std::unordered_map<Hash, int> finest;
-    for (const bool all_known : {false, true}) {
-        for (IncludeFile& include : files_) {
-            if (include.same || !include.options.outline)
-                continue;
-            RepresentationOptions others = include.options;
-            others.outline.reset();
-            const Hash key = Hasher()
-                                 .value(file_hash(*include.representation, others))
-                                 .value(include.outlines)
-                                 .result();
-            int& least = finest.try_emplace(key, *include.options.outline).first->second;
-            if (all_known)
-                include.options.outline = least;
-            least = std::min(least, *include.options.outline);
-        }
+/// Lets a file whose shadows alone are seen be one that is seen, where the same thing has such a
+/// file: another text would save nothing.
+void IncludeFiles::join_shadows() {
+    std::unordered_map<Hash, size_t> seen;  // the first of those without bands
+    const auto key = [&](const IncludeFile& include) {
+        RepresentationOptions shape = include.options;
+        shape.only_shadows = false;
+        shape.outline.reset();
+        shape.sky = nullptr;
+        return file_hash(*include.representation, shape);
+    };
+    for (size_t i = 0; i < files_.size(); ++i) {
+        if (!files_[i].options.only_shadows && !files_[i].options.bands)
+            seen.try_emplace(key(files_[i]), i);
+    }
+    for (IncludeFile& include : files_) {
+        const auto at = include.options.only_shadows ? seen.find(key(include)) : seen.end();
+        if (at == seen.end())
+            continue;
+        include.same = at->second;
+        std::optional<int>& least = files_[at->second].options.outline;
+        if (least && include.options.outline)
+            least = std::min(*least, *include.options.outline);
     }
 }
 
@@ -178,9 +191,10 @@ void IncludeFiles::limit_cut(uint64_t most) {
 }
 
 void IncludeFiles::name(uint64_t budget, uint64_t used, const Job& job) {
+    join_shadows();
     parallel_for(files_.size(), [&](size_t i) {
         IncludeFile& include = files_[i];
-        if (include.options.outline &&
+        if (!include.same && include.options.outline &&
             outlined_by_texel(model_, *include.representation, include.options, outlines_, job))
             include.options.outline = outline_step(0);
     });
@@ -192,11 +206,9 @@ void IncludeFiles::name(uint64_t budget, uint64_t used, const Job& job) {
         include.forecast = file_hash(*include.representation, include.options);
         const CutForecast found = forecast(*include.forecast, include, job);
         include.cut_triangles = found.triangles;
-        include.outlines = found.outlines;
         if (!found.by_outline)
             include.options.outline.reset();
     });
-    share_outlines();
     merge();
     limit_cut(most_cut_triangles(budget, used, triangles()));
     for (IncludeFile& include : files_) {

@@ -22,7 +22,6 @@ struct IncludeFile {
     std::optional<size_t> same = {};    // the file that stands for this one
     std::optional<Hash> forecast = {};  // the name of the file of what is cut
     uint64_t cut_triangles = 0;         // about what its masks become
-    Hash outlines = 0;                  // those that these are cut by
     bool pictured = false;              // true: it shows pictures, as fine as they are seen
     double texel = std::numeric_limits<double>::infinity();  // at its nearest use
     uint64_t bytes = 0;
@@ -39,11 +38,16 @@ public:
     IncludeFiles(const Model& model, std::filesystem::path folder)
         : model_(model), folder_(std::move(folder)), pictures_(folder_) {}
 
-    /// Adds a representation and returns the index of its file; copies share one. Where it shows a
-    /// mask those do whose outlines may be off by about as many metres of its own frame: so far and
-    /// near ones are cut differently.
+    /// Adds a representation and returns the index of its file; copies share one. Where it shows
+    /// masks their outlines may be off by `outline` metres of its own frame, at the nearest copy:
+    /// a file for far ones, too, would be more text than it saves.
     size_t add(const Representation& representation, const RepresentationOptions& options,
                double outline);
+    /// Whether parts of the file may be as coarse as is seen there: it shows masks or pictures, and
+    /// nothing but its look was asked for.
+    bool varies(size_t index) const;
+    /// Gives a file that one thing uses bands, and the outline and texel at its finest place.
+    void set_bands(size_t index, DetailBandsPtr bands, double outline, double texel);
     /// Notes what a texel may cover where a file that is `pictured` is used, in metres of its own
     /// frame.
     void note_texel(size_t index, double texel);
@@ -69,8 +73,8 @@ public:
     bool refracts() const;
 
 private:
+    void join_shadows();
     void merge();
-    void share_outlines();
     CutForecast forecast(Hash name, const IncludeFile& include, const Job& job);
     uint64_t triangles() const;
     void limit_cut(uint64_t most);

@@ -16,7 +16,7 @@ namespace {
 // The version of the text: raised whenever the text for the same input changes, for files are found
 // again by their name alone.
 // Law: part of every file's hash.
-constexpr uint32_t kWriterVersion = 10;
+constexpr uint32_t kWriterVersion = 11;
 
 /// The text of one solid; nothing for one without size.
 std::string solid_text(const Model& model, const Representation& representation, const Solid& solid,
@@ -180,12 +180,16 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
         hasher.value(*options.texel);
     if (options.outline)
         hasher.text("outline").value(*options.outline);
+    if (options.outline && options.bands)
+        hasher.text("bands").value(options.bands->hash());
     if (options.most_cut)
         hasher.text("most cut").value(*options.most_cut);
     if (options.sky)
         hasher.text("sky").value(options.sky->hash);
     if (options.few_textures)
         hasher.text("few textures");
+    if (options.only_shadows)
+        hasher.text("only shadows");
     if (!options.coarse_crowds)
         hasher.text("fine crowds");
     return hasher.result();

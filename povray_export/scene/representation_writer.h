@@ -5,6 +5,7 @@
 #include "base/job.h"
 #include "model/model.h"
 #include "povray_export/lamp/sky_occlusion.h"
+#include "povray_export/mesh/detail_bands.h"
 #include "povray_export/mesh/mask_outlines.h"
 #include "povray_export/texture/picture_writer.h"
 
@@ -23,6 +24,8 @@ struct RepresentationOptions {
     /// The metres, outline_error() in that frame, by which the outline of a mask may be off where
     /// that is more than a texel.
     std::optional<int> outline = {};
+    /// By how much that is more at parts of a mesh; null: the same everywhere.
+    DetailBandsPtr bands = {};
     /// The triangles, 2^most_cut, that its masks may become together; none: as many as pay.
     std::optional<int> most_cut = {};
     /// Outlines of crowds of leaves may be coarser than that, where they would have too many corners.
@@ -32,6 +35,8 @@ struct RepresentationOptions {
     /// a point has. So it has one where it can: without a layer of gloss, and with one share of the
     /// sky a triangle.
     bool few_textures = false;
+    /// True: nothing but shadows of it is seen. So what lets no light through has no look.
+    bool only_shadows = false;
 };
 
 /// The metres of a step of `outline`: two steps are twice as many.

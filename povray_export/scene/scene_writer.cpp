@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "base/files.h"
-#include "choose/criterion.h"
+#include "base/parallel.h"
 #include "light/light_arrival.h"
 #include "light/light_plan.h"
 #include "povray_export/lamp/light_writer.h"
@@ -17,6 +17,7 @@
 #include "povray_export/scene/magnification.h"
 #include "povray_export/scene/occurrence_look.h"
 #include "povray_export/scene/occurrence_text.h"
+#include "povray_export/scene/pixel_field.h"
 #include "povray_export/scene/povray_number.h"
 #include "povray_export/scene/ray_class_uses.h"
 #include "povray_export/scene/render_settings.h"
@@ -26,7 +27,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <span>
 
 namespace lodestone::povray {
@@ -66,6 +66,7 @@ public:
           problems_(problems),
           job_(job),
           shading_(shading_of(options, view.pixel_error)),
+          pixels_(model, view),
           includes_(model, options.folder) {
         report_.lamps = static_cast<uint64_t>(
             std::count_if(model_.lights.begin(), model_.lights.end(), light::is_lamp));
@@ -182,15 +183,19 @@ private:
                                      "is not drawn: its transform is not a number"});
             return;
         }
-        const double pixel = pixel_of(node, representation, use.world);
+        const Bound bound = transformed(representation.summary.bound, use.world);
+        const double pixel = pixels_.at(bound) / enlarged(use);
+        const bool shadows = textures && lit() && shading_.bounces == 0 && use.in_place == 0 &&
+                             pixels_.only_shadows(bound);
         use.file = includes_.add(
             representation,
             {.textures = textures,
              .uvs = options_.uvs,
              .coarse_crowds = view_.pixel_error > 0,
-             .sky = textures ? sky : nullptr,
-             .few_textures = textures && plans_lights() && report_.lamps >= light::kManyLamps},
-            std::max(view_.pixel_error, kUnseen) * pixel);
+             .sky = textures && !shadows ? sky : nullptr,
+             .few_textures = textures && plans_lights() && report_.lamps >= light::kManyLamps,
+             .only_shadows = shadows},
+            outline_of(pixel));
         uses_.push_back(use);
         if (includes_.at(use.file).pictured)
             includes_.note_texel(use.file, shading_.texture_error * pixel);
@@ -225,16 +230,34 @@ private:
                         false, nullptr);
         }
         collect_own();
+        find_bands();
         includes_.name(options_.budget, cut_.bytes, job_);
     }
 
-    /// The size of a pixel at one occurrence, in metres of its own frame.
-    double pixel_of(const choose::CutNode& node, const Representation& representation,
-                    const Affine& world) const {
-        const Bound bound = transformed(representation.summary.bound, world);
-        const double z = distance(bound, view_.camera.position);
-        const double enlarged = stretch(world) * std::max(1.0, node.importance);
-        return choose::pixel_size(view_, z) / enlarged;
+    /// The factor by which a use shows its representation larger, with what it counts for.
+    double enlarged(const OccurrenceUse& use) const {
+        return stretch(use.world) * std::max(1.0, cut_.nodes[use.node].importance);
+    }
+    /// The metres by which the outline of a mask may be off where a pixel covers so many.
+    double outline_of(double pixel) const { return std::max(view_.pixel_error, kUnseen) * pixel; }
+
+    /// Finds what of large things may be coarser than their nearest parts.
+    void find_bands() {
+        std::vector<uint32_t> users(includes_.size(), 0);
+        for (const OccurrenceUse& use : uses_)
+            ++users[use.file];
+        parallel_for(uses_.size(), [&](size_t i) {
+            const OccurrenceUse& use = uses_[i];
+            if (users[use.file] != 1 || !includes_.varies(use.file))
+                return;
+            job_.check();
+            const Mesh& mesh = includes_.at(use.file).representation->mesh();
+            if (const DetailBandsPtr bands = pixels_.bands(mesh, use.world)) {
+                const double pixel = bands->finest() / enlarged(use);
+                includes_.set_bands(use.file, bands, outline_of(pixel),
+                                    shading_.texture_error * pixel);
+            }
+        });
     }
 
     /// Names each problem once for all occurrences that show the same.
@@ -329,32 +352,8 @@ private:
                                                    demands, problems_, job_);
         if (!plan.empty())
             report_.lights_each = plan.lights_each;
-        name_slow_lamps(plan);
+        name_slow_lamps(plan, problems_);
         return plan;
-    }
-
-    /// Names lights that make a picture slow: lamps, and those that stand for several.
-    void name_slow_lamps(const light::LightPlan& plan) {
-        // The shadow rays to lamps from a point, on average.
-        // Taste: with fewer, other things take most of the time.
-        constexpr double kMany = 40;
-        const double rays = light::mean_lamp_rays(plan);
-        if (!(rays >= kMany))
-            return;
-        std::set<uint32_t> soft;
-        for (const std::vector<light::GroupLight>& group : plan.groups) {
-            for (const light::GroupLight& one : group) {
-                if (one.grid.rays > 1)
-                    soft.insert(one.light);
-            }
-        }
-        if (soft.empty())
-            return;
-        problems_.push_back(
-            {"", Severity::Info, "slow_lamps",
-             text(soft.size(), " lights with soft shadows: from each point of the picture about ",
-                  std::lround(rays),
-                  " shadow rays go to lamps; fewer Area Samples or larger Lights take less time")});
     }
 
     /// The text of everything that is drawn, with the lights of its group around it.
@@ -472,6 +471,7 @@ private:
     Problems& problems_;
     const Job& job_;
     const Shading shading_;
+    const PixelField pixels_;
     IncludeFiles includes_;
     std::vector<OccurrenceUse> uses_;
     ExportReport report_;

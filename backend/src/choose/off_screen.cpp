@@ -217,4 +217,8 @@ double OffScreenField::coarser(const Bound& bound, double z) const {
     return std::max(1.0, least / here);
 }
 
+bool OffScreenField::only_shadows(const Bound& bound) const {
+    return mirrors_.empty() && pyramid_.outside(bound);
+}
+
 }  // namespace lodestone::choose

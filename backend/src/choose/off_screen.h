@@ -55,6 +55,10 @@ public:
     /// eye. cost: a test of every light and mirror (at most kMostMirrors). Thread-safe.
     double coarser(const Bound& bound, double z) const;
 
+    /// Whether the picture may show nothing but shadows of what is within a bound (world frame):
+    /// it is outside, and nothing in the picture that counts mirrors or refracts. Thread-safe.
+    bool only_shadows(const Bound& bound) const;
+
     /// The most mirrors that are looked at one by one; more are put into groups.
     /// Taste: more make factors tighter and every choice slower.
     static constexpr size_t kMostMirrors = 256;

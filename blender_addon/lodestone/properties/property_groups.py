@@ -222,7 +222,7 @@ class LODESTONE_PG_scene(Overrides, RayClasses, bpy.types.PropertyGroup):
         name="Off Screen",
         description="How fine things are that the picture does not show",
         items=OFF_SCREEN,
-        default="FULL",
+        default="REFLECTED",
     )
     antialias: EnumProperty(
         name="Antialiasing",

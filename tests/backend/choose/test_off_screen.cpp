@@ -202,6 +202,22 @@ TEST(OffScreen, WhatAMirrorShowsIsAsFarAsTheWayToIt) {
     EXPECT_EQ(choose::imaged_share(metal), 1);
 }
 
+TEST(OffScreen, WithoutAMirrorNothingButShadowsOfItIsSeen) {
+    Material metal;
+    metal.metallic = 1;
+    metal.roughness = 0;
+    const View view = from_origin(OffScreen::Reflected);
+    const auto only_shadows = [&](const Material& pane, const Bound& bound, const View& of) {
+        const Model model = plain(pane);
+        return OffScreenField(model, of).only_shadows(bound);
+    };
+    const Bound behind = ball({0, -20, 0}, 1);
+    EXPECT_TRUE(only_shadows({}, behind, view));
+    EXPECT_FALSE(only_shadows({}, ball({0, 20, 0}, 1), view));
+    EXPECT_FALSE(only_shadows(metal, behind, view));
+    EXPECT_TRUE(only_shadows(metal, behind, from_origin(OffScreen::Shadows)));
+}
+
 TEST(OffScreen, APictureOfTheSkyLimitsIt) {
     Model model = plain();
     model.world.environment = models::checker();
