@@ -979,12 +979,13 @@ typedef struct lds_reason {
     double stretch;    /* factor by which its placements enlarge it */
     double error_px;   /* error * stretch / pixel */
     double factor;     /* all that refines / all that coarsens, within 1/64 ... 64; infinite where
-                          a lens hides part of it */
-    double importance; /* that of its placements. The fields down to screen_lenses refine */
+                          a lens hides part of it. importance, demand, lenses and screen_lenses
+                          refine; a later factor says what it does, where it stands */
+    double importance; /* that of its placements */
     double demand;     /* largest importance below it; infinite where a level limit lies below */
     double lenses;
     double screen_lenses;
-    double depth; /* the fields from here down to off_screen coarsen */
+    double depth; /* coarsens, as motion, darkness and off_screen do */
     double motion;
     double darkness;
     double off_screen;

@@ -120,7 +120,7 @@ void CostSweep::open(const GroupOpening& opening) {
                          demand))
             continue;
         FactorField::FactorPath path = group.path;
-        if (view_.modifiers.when_moving)
+        if (field_.follows_paths())
             path = field_.below(group.path, group.placed.world,
                                 table_.model()
                                     .objects[group.placed.node.object]

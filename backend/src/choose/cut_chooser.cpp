@@ -237,7 +237,7 @@ void CutChooser::visit_child(const PendingChild& entry) {
     if (!place_child(table_, group, around, child, placed, enlarge, demand))
         return;
     path_.lenses = above.path.lenses;
-    if (view_.modifiers.when_moving)
+    if (field_.follows_paths())
         path_ = field_.below(above.path, around,
                              table_.model()
                                  .objects[group.object]
@@ -312,7 +312,7 @@ void CutChooser::push_children(const KnownObject& known, uint32_t index, double 
         frames_.resize(depth + size_t{1});
     frames_[depth].stretch = enlarge;
     frames_[depth].path.lenses = path.lenses;
-    if (view_.modifiers.when_moving)
+    if (field_.follows_paths())
         frames_[depth].path = path;
     for (uint32_t i = count; i-- > 0;)
         stack_.push_back({index, first + i, i, depth + 1});

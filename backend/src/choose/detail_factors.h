@@ -51,6 +51,8 @@ public:
         Affine closing;       // the map to the world when the shutter closes
         bool moving = false;  // a placement along it moves
     };
+    /// Whether anything but lenses is known along a path: below() is asked only then.
+    bool follows_paths() const { return view_.modifiers.when_moving; }
     FactorPath root();
     /// The path of a child, after `at` was asked for its group.
     FactorPath below(const FactorPath& group, const Affine& world,
