@@ -1,28 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/scene/occurrence_text.h"
 
-#include "choose/ray_class/ray_cut.h"
-
 #include <array>
 #include <string_view>
 
 namespace lodestone::povray {
 namespace {
 
-/// For each of kRayClasses: what hides a thing from it.
+/// For each of kRayClasses: what hides a thing from it. Each class needs a word: where something is
+/// drawn a second time for some classes, all others must meet one of the two.
 constexpr std::array kHiddenWords{" no_image", " no_reflection", " no_shadow", " no_radiosity"};
 static_assert(kHiddenWords.size() == kRayClasses.size());
 
-/// Whether what the camera sees can be hidden from each class that may meet something else in its
-/// place.
-constexpr bool replaced_things_can_be_hidden() {
-    for (size_t i = 0; i < kHiddenWords.size(); ++i) {
-        if (choose::kRayRules[i] != choose::RayRule::None && kHiddenWords[i][0] == '\0')
+constexpr bool each_class_has_a_word() {
+    for (const char* word : kHiddenWords) {
+        if (word[0] != ' ' || word[1] == '\0')
             return false;
     }
     return true;
 }
-static_assert(replaced_things_can_be_hidden());
+static_assert(each_class_has_a_word(), "a thing can be hidden from each class of rays");
 
 const std::string& name_of_node(const Model& model, const choose::Cut& cut, uint32_t node) {
     const choose::CutNode& here = cut.nodes[node];

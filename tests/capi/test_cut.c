@@ -333,7 +333,7 @@ static void test_classes_of_rays_are_counted_and_named(void) {
     EXPECT(lds_cut_choice_rays(foreign, cut, 0, LDS_RAYS_SHADOW, &choice) == LDS_ERROR_STALE_ID);
     lds_model_destroy(foreign);
     lds_cut_destroy(cut);
-    modifiers.ray_classes = 8;
+    modifiers.ray_classes = 256; /* no class: their masks have eight bits */
     EXPECT(lds_cut_create(model, &view, NULL, &cut) == LDS_ERROR_INVALID_ARGUMENT);
     lds_model_destroy(model);
 }

@@ -6,6 +6,7 @@
 #include <math.h>
 
 enum { MANY = 200 };
+enum { kNoRayClass = 256 }; /* their masks have eight bits */
 
 static void test_strands_become_tubes(void) {
     const float points[4][3] = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}};
@@ -256,7 +257,7 @@ static void test_hidden_placements_hide_all_below(void) {
     EXPECT(lds_model_hide_placement(model, top, LDS_RAY_CAMERA) == LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(lds_model_add_placement(model, top, pair, kIdentity, "pair") == LDS_OK);
     EXPECT(lds_model_hide_placement(model, cube, LDS_RAY_CAMERA) == LDS_ERROR_INVALID_ARGUMENT);
-    EXPECT(lds_model_hide_placement(model, top, 16) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_model_hide_placement(model, top, kNoRayClass) == LDS_ERROR_INVALID_ARGUMENT);
     EXPECT(lds_model_hide_placement(model, top, LDS_RAY_CAMERA) == LDS_OK);
     EXPECT(lds_model_hide_placement(model, pair, LDS_RAY_SHADOW | LDS_RAY_REFLECTION) == LDS_OK);
     EXPECT(lds_model_set_root(model, top) == LDS_OK);
@@ -282,7 +283,7 @@ static void test_many_are_placed_at_once_or_not_at_all(void) {
     places[1][3] = 5;
     const char* names = "near\0far";
     const uint32_t hidden[2] = {0, LDS_RAY_SHADOW};
-    const uint32_t unknown[2] = {0, 16};
+    const uint32_t unknown[2] = {0, kNoRayClass};
     const float* rows = &places[0][0];
     EXPECT(lds_model_add_placements(model, many, 0, NULL, NULL, NULL, NULL) == LDS_OK);
     EXPECT(lds_model_add_placements(model, cube, 2, children, rows, names, NULL) ==

@@ -15,7 +15,7 @@ import addon_path  # makes the add-on importable
 from lodestone.core.batch import command_line
 from lodestone.core.batch.file_jobs import FileJob
 from lodestone.core.picture import unseen_detail, why_sentences
-from lodestone_native import Drawn, Kind, Met, Modifiers, Object, OffScreen, Rays
+from lodestone_native import Drawn, Kind, Met, Modifiers, Object, OffScreen, RayClass, Rays
 from test_why_sentences import _Cut
 
 BOTH = Rays.SHADOW | Rays.REFLECTION
@@ -49,6 +49,16 @@ class Words(unittest.TestCase):
         self.assertEqual(set(told.split(", ")), {one.name.lower() for one in Rays})
         for one in Rays:
             self.assertIn(f'std::pair{{"{one.name.lower()}", LDS_RAYS_{one.name}}}', command)
+
+    def test_each_class_with_a_rule_can_be_switched_on(self):
+        path = addon_path.ROOT / "backend" / "src" / "choose" / "ray_class" / "ray_cut.h"
+        (rules,) = re.findall(r"kRayRules\{([^}]*)\}", path.read_text())
+        ruled = {
+            one.name
+            for one, rule in zip(RayClass, re.findall(r"RayRule::(\w+)", rules), strict=True)
+            if rule != "None"
+        }
+        self.assertEqual({one.rays.name for one in unseen_detail.CLASSES}, ruled)
 
     def test_tooltips_are_sentences_without_a_full_stop(self):
         for one in unseen_detail.CLASSES:

@@ -126,7 +126,7 @@ public:
                std::any_of(model.lights.begin(), model.lights.end(), casts_shadows)) {
         View shadows = view;
         shadows.modifiers.off_screen = OffScreen::Shadows;
-        if (!need_.mirrored() || (view.modifiers.ray_classes & kReflectionRays) != 0)
+        if (!need_.mirrored() || (view.modifiers.ray_classes & classes_with(RayRule::Mirror)) != 0)
             off_screen_.emplace(model, shadows_view_ = std::move(shadows));
         triangles_.resize(cut.nodes.size(), 0);
         for (size_t i = cut.nodes.size(); i-- > 0;) {

@@ -29,6 +29,14 @@ constexpr RayRule rule_of(RayMask rays) {
     return RayRule::None;
 }
 
+/// The classes with this rule.
+constexpr RayMask classes_with(RayRule rule) {
+    RayMask rays = 0;
+    for (size_t i = 0; i < kRayClasses.size(); ++i)
+        rays |= kRayRules[i] == rule ? kRayClasses[i] : RayMask{0};
+    return rays;
+}
+
 /// Why a class of rays meets a representation in place of what the camera sees.
 enum class RayState : uint8_t {
     Off = 0,      // the class does not see the thing
