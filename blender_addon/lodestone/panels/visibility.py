@@ -4,6 +4,7 @@
 import bpy
 from bpy.types import Panel
 
+from ..bridge.scene import ray_visibility
 from . import EnginePanel
 
 _SEEN = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
@@ -24,9 +25,8 @@ class LODESTONE_OBJECT_PT_ray_visibility(EnginePanel, Panel):
         layout.use_property_split = True
         layout.use_property_decorate = False
         column = layout.column()
-        column.prop(context.object, "visible_camera", text="Camera")
-        column.prop(context.object, "visible_glossy", text="Glossy")
-        column.prop(context.object, "visible_shadow", text="Shadow")
+        for switch in ray_visibility.SWITCHES:
+            column.prop(context.object, switch.name, text=switch.label)
 
 
 register, unregister = bpy.utils.register_classes_factory((LODESTONE_OBJECT_PT_ray_visibility,))

@@ -4,27 +4,37 @@ POV-Ray can do it."""
 
 from collections.abc import Iterator
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...core.native import lodestone_native as native
 from ...core.problems import INFO, WARNING, Problems
 from ..datablock_ids import name_of
 
 RayClass = native.RayClass
-_SWITCHES = (  # Blender's names, the ray class of ours
-    ("visible_camera", RayClass.CAMERA),
-    ("visible_glossy", RayClass.REFLECTION),
-    ("visible_shadow", RayClass.SHADOW),
-    ("visible_diffuse", RayClass.RADIOSITY),
+
+
+class RaySwitch(NamedTuple):
+    """`name`: Blender's property of an object. `label`: the panel's word for it."""
+
+    name: str
+    label: str
+    ray_class: native.RayClass
+
+
+SWITCHES = (
+    RaySwitch("visible_camera", "Camera", RayClass.CAMERA),
+    RaySwitch("visible_glossy", "Glossy", RayClass.REFLECTION),
+    RaySwitch("visible_shadow", "Shadow", RayClass.SHADOW),
+    RaySwitch("visible_diffuse", "Diffuse", RayClass.RADIOSITY),
 )
 # What nearly all objects have: all rays see them
 SEEN_BY_ALL = {
-    **dict.fromkeys((name for name, _ in _SWITCHES), True),
+    **dict.fromkeys((switch.name for switch in SWITCHES), True),
     "visible_transmission": True,
     "is_shadow_catcher": False,
 }
 # The classes with a switch, and all classes
-_SWITCHED = int(sum(ray_class for _, ray_class in _SWITCHES))
+_SWITCHED = int(sum(switch.ray_class for switch in SWITCHES))
 _ALL = int(sum(RayClass))
 _SEEN = attrgetter(*SEEN_BY_ALL)
 _SEEN_VALUES = tuple(SEEN_BY_ALL.values())
@@ -54,7 +64,7 @@ class Visibility:
         if _plain(item) and not (in_scene and self._any["indirect_only_get"]):
             return 0
         hidden = 0
-        for name, ray_class in _SWITCHES:
+        for name, _, ray_class in SWITCHES:
             if not getattr(item, name, True):
                 hidden |= ray_class
         if getattr(item, "visible_transmission", True) != getattr(item, "visible_camera", True):
