@@ -207,7 +207,8 @@ def problems_are_selected_ignored_and_taken_back():
 
 def looking_wrote_nothing():
     blocks = (*bpy.data.materials, *bpy.data.lights, *bpy.data.cameras, *bpy.data.worlds)
-    assert not any("lodestone" in item.keys() for item in blocks)
+    written = [repr(item) for item in blocks if "lodestone" in item.keys()]
+    assert not written, f"looking stored a group of settings in {written}: see settings_of()"
     yield
 
 
