@@ -33,10 +33,6 @@ SCENES = {
     "tps-forklift": "tps-forklift/flying_forklift.blend",
 }
 PIXEL_ERRORS = (0.0, 1.0)
-HEADER = (
-    "| scene, Pixel Error | occurrences (mesh / box / ellipsoid) | triangles | scene MB | export "
-    "| parse | trace | memory MB | mean | SSIM |\n|---|---|---|---|---|---|---|---|---|---|"
-)
 
 
 def prepare(data: Path, out: Path) -> list[Path]:
@@ -82,14 +78,21 @@ def render(
     return found
 
 
+def header(made: dict) -> str:
+    return (
+        f"| scene, Pixel Error | occurrences ({' / '.join(made['cut']['kinds'])}) | triangles "
+        "| scene MB | export | parse | trace | memory MB | mean | SSIM |\n"
+        "|---|---|---|---|---|---|---|---|---|---|"
+    )
+
+
 def row(name: str, made: dict, empty: int, difference) -> str:
     cut, export, povray = made["cut"], made["export"], made["povray"]
-    kinds = cut["kinds"]
-    shape = f"{kinds['mesh']:,} / {kinds['box']:,} / {kinds['ellipsoid']:,}"
+    kinds = " / ".join(f"{count:,}" for count in cut["kinds"].values())
     memory = max(0, povray["peak_bytes"] - empty) / 1e6
     compared = " | " if difference is None else f"{difference.mean:.4f} | {difference.ssim:.3f}"
     return (
-        f"| {name}, {made['pixel_error']:g} | {cut['occurrences']:,} ({shape}) "
+        f"| {name}, {made['pixel_error']:g} | {cut['occurrences']:,} ({kinds}) "
         f"| {cut['triangles']:,} | {export['bytes'] / 1e6:.1f} | {export['cpu_s']:.2f} "
         f"| {povray['parse_cpu_s']:.2f} | {povray['trace_cpu_s']:.2f} | {memory:.1f} "
         f"| {compared} |"
@@ -102,9 +105,10 @@ def table(found: dict[str, dict[float, dict]], size: str) -> str:
     import lodestone_native as native
 
     empty = native.povray_empty_bytes(*map(int, size.split("x")))
-    lines = [HEADER]
+    lines = []
     for name, pictures in found.items():
         full, *others = pictures.values()
+        lines = lines or [header(full)]
         lines.append(row(name, full, empty, None))
         for made in others:
             difference = native.image_compare(full["picture"], made["picture"])

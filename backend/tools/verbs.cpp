@@ -53,8 +53,9 @@ const std::vector<CommandVerb>& verbs() {
         {"build",
          "IN STORE",
          "the approximation hierarchy of a model, in a folder",
-         "Makes simpler levels, boxes and ellipsoids of every object and group of IN and writes\n"
-         "them to the folder STORE, a 3D Tiles 1.1 tileset. What has not changed is kept.",
+         "Makes simpler levels, boxes, ellipsoids and composites of every object and group of IN\n"
+         "and writes them to the folder STORE, a 3D Tiles 1.1 tileset. What has not changed is\n"
+         "kept.",
          2,
          {{"level-ratio", "R", "triangles of a level over the finer one's (default 0.4)"},
           {"rays", "N", "rays to measure an object (default 4096)"},

@@ -102,8 +102,8 @@ def legend() -> list:
     kinds = native.Kind
     entries = [(f"LOD {lod}", (kinds.MESH, lod)) for lod in (0, 1, 2, 3, 4, 5)]
     entries[-1] = ("LOD 5+", entries[-1][1])
-    entries += [("BOX", (kinds.BOX, 0)), ("ELLIPSOID", (kinds.ELLIPSOID, 0))]
-    entries += [("COMPOSITE", (kinds.COMPOSITE, 0))]
+    meshes = (kinds.MESH, kinds.ASSEMBLY)
+    entries += [(kind.name, (kind, 0)) for kind in kinds if kind not in meshes]
     return [(word, native.povray_false_color(*key)) for word, key in entries]
 
 

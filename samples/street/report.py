@@ -33,16 +33,16 @@ def _total(row: dict) -> float:
 
 
 def _table(rows: list[dict]) -> list[str]:
+    words = " / ".join(rows[0]["kinds"])
     lines = [
-        "| picture | occurrences (mesh / box / ellipsoid / composite) | triangles | scene MB "
+        f"| picture | occurrences ({words}) | triangles | scene MB "
         "| export s | parse s | trace s | memory MB | mean | 99.9 % | max | SSIM |",
         "|---|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for row in rows:
-        kinds = row["kinds"]
+        counts = " / ".join(f"{count:,}" for count in row["kinds"].values())
         lines.append(
-            f"| {row['picture']} | {row['occurrences']:,} ({kinds['mesh']:,} / {kinds['box']:,} / "
-            f"{kinds['ellipsoid']:,} / {kinds['composite']:,}) | {row['triangles']:,} "
+            f"| {row['picture']} | {row['occurrences']:,} ({counts}) | {row['triangles']:,} "
             f"| {row['scene_bytes'] / 1e6:.1f} "
             f"| {row['export_cpu_s']:.2f} | {row['parse_cpu_s']:.2f} | {row['trace_cpu_s']:.2f} "
             f"| {row['memory_bytes'] / 1e6:.1f} | {row['mean']:.4f} | {row['p999']:.3f} "

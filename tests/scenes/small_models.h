@@ -9,6 +9,11 @@
 
 namespace lodestone::models {
 
+/// Whether a stand-in of this kind is a solid: whatever is no mesh.
+inline bool is_solid(Kind kind) {
+    return kind != Kind::Mesh && kind != Kind::Assembly;
+}
+
 /// The model is drawn by POV-Ray from then on.
 inline ObjectIndex add_leaf(Model& model, const std::string& uid, Mesh mesh, Material material = {},
                             ObjectRole role = ObjectRole::Automatic) {

@@ -102,11 +102,12 @@ typedef struct lds_object {
 
 typedef enum lds_role {
     LDS_ROLE_AUTOMATIC = 0, /* ordinary; but the ground that most of a group's other children stand
-                                 on is never a box or ellipsoid, and neither is their group */
-    LDS_ROLE_ENVIRONMENT = 1, /* wall, ground or sky: simplified, but never a box or ellipsoid */
+                                 on is never a solid (lds_kind), and neither is their group */
+    LDS_ROLE_ENVIRONMENT = 1, /* wall, ground or sky: simplified, but never a solid */
     LDS_ROLE_ORDINARY = 2     /* may be replaced whatever stands on it */
 } lds_role;
 
+/* A solid is what is neither a mesh nor an assembly. */
 typedef enum lds_kind {
     LDS_KIND_MESH = 1,
     LDS_KIND_BOX = 3,

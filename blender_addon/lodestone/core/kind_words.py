@@ -21,6 +21,14 @@ KIND_WORDS: dict[int, KindWords] = {
     native.Kind.ASSEMBLY: KindWords("Group", "Groups"),
 }
 DRAWN_KINDS = tuple(kind for kind in native.Kind if kind != native.Kind.ASSEMBLY)
+SOLID_KINDS = tuple(kind for kind in DRAWN_KINDS if kind != native.Kind.MESH)
+
+
+def any_solid() -> str:
+    """The kinds of solids, in a sentence: "a box, an ellipsoid or a composite"."""
+    words = [KIND_WORDS[kind].level.lower() for kind in SOLID_KINDS]
+    named = [f"{'an' if word[0] in 'aeiou' else 'a'} {word}" for word in words]
+    return f"{', '.join(named[:-1])} or {named[-1]}"
 
 
 def level_word(lod: int, kind: int) -> str:

@@ -13,6 +13,7 @@ from bpy.props import (
 )
 
 from ..bridge import object_decisions
+from ..core import kind_words
 from .decided_property import decided
 from .lens_properties import LODESTONE_PG_lens
 from .quality_properties import Overrides, RayClasses
@@ -34,7 +35,7 @@ ROLES = (  # the last ones are what files hold
     (
         "ORDINARY",
         "Ordinary",
-        "May be drawn as a simpler mesh, a box or an ellipsoid, whatever stands on it",
+        f"May be drawn as a simpler mesh, {kind_words.any_solid()}, whatever stands on it",
         0,
     ),
 )

@@ -13,6 +13,7 @@ from bpy.props import EnumProperty, FloatProperty, PointerProperty
 
 from .. import handlers
 from ..bridge.live import kept_model_view
+from ..core import kind_words
 from ..core.native import lodestone_native as native
 from ..core.picture import false_colors
 from ..core.session.addon_session import addon_session
@@ -26,7 +27,7 @@ MODES = (
         "LEVEL",
         "Level",
         "Gray originals; blue, green and yellow ever coarser levels; other colors what is drawn as "
-        "a box, an ellipsoid or a composite",
+        + kind_words.any_solid(),
     ),
     ("ERROR", "Error on Screen", "How much of Pixel Error each level uses up"),
     ("COST", "Cost", "How many triangles each object or group takes"),

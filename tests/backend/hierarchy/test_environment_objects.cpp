@@ -121,10 +121,7 @@ TEST_F(Environment, AnOrdinaryGroundMayBecomeABox) {
     size_t solids = 0;
     for (const Object& object : now.model.objects) {
         for (const Representation& level : object.representations)
-            solids += level.summary.kind == Kind::Box || level.summary.kind == Kind::Composite ||
-                              level.summary.kind == Kind::Ellipsoid
-                          ? 1
-                          : 0;
+            solids += models::is_solid(level.summary.kind) ? 1 : 0;
     }
     EXPECT_GT(solids, 0u);
 }

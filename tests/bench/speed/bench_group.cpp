@@ -39,10 +39,6 @@ using namespace lodestone;
 namespace {
 
 constexpr int kViews = 20;
-constexpr uint64_t kTrianglesOfBox =
-    12;  // what primitives count as, as in hierarchy/flattened_group
-constexpr uint64_t kTrianglesOfEllipsoid = 80;
-constexpr uint64_t kTrianglesOfComposite = 8 * kTrianglesOfEllipsoid;
 constexpr size_t kFewest = 8;    // groups of more children are structured
 constexpr double kMerged = 0.5;  // of its parent's area: then a cluster is dissolved
 
@@ -195,14 +191,9 @@ struct Result {
 };
 
 double drawn_by(const Representation& representation) {
-    uint64_t drawn = representation.summary.cost.triangles;
-    if (representation.summary.kind == Kind::Box)
-        drawn += kTrianglesOfBox;
-    if (representation.summary.kind == Kind::Ellipsoid)
-        drawn += kTrianglesOfEllipsoid;
-    if (representation.summary.kind == Kind::Composite)
-        drawn += kTrianglesOfComposite;
-    return static_cast<double>(drawn);
+    const RepresentationSummary& summary = representation.summary;
+    return static_cast<double>(summary.cost.triangles +
+                               row_of(summary.kind).viewer_triangles.value_or(0));
 }
 
 void add_cut(Result& result, const Model& model, const View& view) {

@@ -7,7 +7,7 @@ Colors are linear Rec.709, 0...1.
 from typing import Any
 
 from .. import progress_text, srgb
-from ..kind_words import DRAWN_KINDS, level_word
+from ..kind_words import SOLID_KINDS, level_word
 from ..native import lodestone_native as native
 
 Color = tuple[float, float, float]
@@ -23,7 +23,7 @@ _ERRORS: tuple[tuple[float, Color], ...] = (
     (1.0, (0.8, 0.06, 0.03)),
 )
 _ROUNDING = 1e-6
-# By the most triangles that an occurrence takes; boxes and ellipsoids take none
+# By the most triangles that an occurrence takes; solids take none
 _COSTS: tuple[tuple[float, Color], ...] = (
     (12, (0.03, 0.05, 0.35)),
     (100, (0.06, 0.25, 0.7)),
@@ -90,11 +90,11 @@ def legend(mode: str, pixel_error: float) -> list[tuple[str, Color]]:
     if mode == COST:
         bounds = [(f"up to {progress_text.count(most)}", color) for most, color in _COSTS[1:-1]]
         more = f"more than {progress_text.count(_COSTS[-2][0])} triangles"
-        return [("Box, ellipsoid", _COSTS[0][1]), *bounds, (more, _COSTS[-1][1])]
+        solids = ", ".join(level_word(1, kind) for kind in SOLID_KINDS).capitalize()
+        return [(solids, _COSTS[0][1]), *bounds, (more, _COSTS[-1][1])]
     words = ["Original", *(f"LOD {lod}" for lod in range(1, _LEVELS)), f"LOD {_LEVELS}+"]
     meshes = [(word, of_level(native.Kind.MESH, lod)) for lod, word in enumerate(words)]
-    solids = [kind for kind in DRAWN_KINDS if kind != native.Kind.MESH]
-    return [*meshes, *((level_word(1, kind), of_level(kind, 1)) for kind in solids)]
+    return [*meshes, *((level_word(1, kind), of_level(kind, 1)) for kind in SOLID_KINDS)]
 
 
 def displayed(color: Color) -> Color:
