@@ -96,7 +96,8 @@ class Verb:
         """Raises Failed when pictures are asked for that this verb cannot make."""
 
     def builds_levels(self, requests: Sequence[PictureRequest]) -> bool:
-        """Whether missing and changed levels are built before the pictures."""
+        """Whether missing and changed levels are built before the pictures; only then the scene is
+        read with automatic groups."""
         return any(request.levels for request in requests)
 
     def about(self, model: Any) -> dict[str, Any]:
