@@ -302,6 +302,7 @@ class Drawn(unittest.TestCase):
     def test_depth_exaggeration_is_coarser_beyond_the_focus_and_finer_before_it(self):
         camera = self.scene.camera
         plain = self.chosen()
+        self.scene.lodestone.off_screen = "FULL"
         self.assertIsNone(quality_lenses.modifiers(SceneSettings(self.scene), (), camera))
         settings, dof = camera.data.lodestone, camera.data.dof
         before = dof.focus_distance
@@ -318,6 +319,7 @@ class Drawn(unittest.TestCase):
             self.assertNotEqual(self.statistics().bytes, numbers.bytes)
         finally:
             settings.property_unset("depth_exaggeration")
+            self.scene.lodestone.property_unset("off_screen")
             dof.focus_distance = before
         self.assertLess(sum(far.values()), sum(near.values()))
         self.assertLessEqual(sum(far.values()), sum(plain.values()))
@@ -350,10 +352,11 @@ class Drawn(unittest.TestCase):
         try:
             camera.location = (4.5, 1.5, 40)  # sees the first group
             self.scene.lodestone.pixel_error_render = 0.1
-            full = self.chosen()
-            self.scene.lodestone.off_screen = "SHADOWS"
             found = self.chosen()
+            self.scene.lodestone.off_screen = "FULL"
+            full = self.chosen()
         finally:
+            self.scene.lodestone.property_unset("off_screen")
             camera.location = before
         self.assertEqual(found["Group 0"], full["Group 0"])
         self.assertLess(found.get("Group 2", 0), full["Group 2"])

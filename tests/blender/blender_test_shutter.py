@@ -67,7 +67,7 @@ class Shutter(unittest.TestCase):
         self.assertEqual(set(found.values()), {1.0})
         self.scene.lodestone.coarser_moving_dark = False
         moved(self.mover, (2, 3, 0))
-        self.assertIsNone(self.motions()[1])
+        self.assertFalse(self.motions()[1].when_moving)
 
     def test_what_is_scaled_to_nothing_has_no_motion_and_no_traceback(self):
         self.mover.scale = (0, 0, 0)
