@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/lamp/sky_occlusion.h"
 
+#include "base/findings_file.h"
 #include "base/parallel.h"
-#include "light/sky/sky_bakes.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_things.h"
 
@@ -43,7 +43,7 @@ public:
         : model_(model),
           options_(options),
           job_(job),
-          bakes_(options.file),
+          bakes_(options.file, kSkyVersion),
           all_(model, cut, options.most_triangles, job),
           rays_(options.rays, all_.distinct_triangles()) {}
 
@@ -365,7 +365,7 @@ private:
     const Model& model_;
     const SkyOcclusionOptions& options_;
     const Job& job_;
-    light::SkyBakes bakes_;
+    FindingsFile bakes_;
     SkyThings all_;
     CornerRays rays_;
     std::vector<uint32_t> numbers_;  // by leaf

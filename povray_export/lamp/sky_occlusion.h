@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 namespace lodestone::povray {
@@ -17,6 +18,9 @@ namespace lodestone::povray {
 /// The grades of a mesh's corners.
 /// Taste: a larger value shows finer steps of shade, for a texture of each material and grade.
 inline constexpr int kSkyGrades = 32;
+/// The beginning of the file that keeps it.
+/// Law: another one is another format.
+inline constexpr std::string_view kSkyVersion = "LDSSKY01";
 /// The share of the sky's light that a grade stands for; grade kSkyGrades - 1 is all of it.
 double share_of_grade(uint8_t grade);
 uint8_t grade_of_share(double share);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the shade of the sky in POV-Ray's scenes: it is as dark as it must be, makes no ray go on
 // more than once, and is found once.
-#include "light/sky/sky_bakes.h"
+#include "base/findings_file.h"
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_occlusion.h"
@@ -212,7 +212,7 @@ TEST_F(SkyOcclusionScenes, KeptLightOnAnotherMeshIsFoundAnew) {
     const std::string text = includes("scene");
     const std::filesystem::path file = own_scratch() / "scene" / "sky_light.bin";
     const std::vector<std::pair<Hash, uint32_t>> kept = kept_bakes(file);
-    light::SkyBakes bakes(file);
+    FindingsFile bakes(file, kSkyVersion);
     for (const auto& [key, size] : kept) {
         light::SkyShares other;
         other.splits = {{geometry::welded_edge(0, 1)}};
@@ -347,8 +347,8 @@ TEST_F(SkyOcclusionScenes, TheLightOnCopiesDoesNotDependOnWhatIsKept) {
     }
     write("scene", builder.finish());
     const std::filesystem::path file = own_scratch() / "scene" / "sky_light.bin";
-    light::SkyBakes all(file);
-    light::SkyBakes some(own_scratch() / "some" / "sky_light.bin");
+    FindingsFile all(file, kSkyVersion);
+    FindingsFile some(own_scratch() / "some" / "sky_light.bin", kSkyVersion);
     int means = 0;
     for (const auto& [key, size] : kept_bakes(file)) {
         // A mean is two numbers of four bytes; those of one thing are left out.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "light/sky/sky_bakes.h"
+#include "base/findings_file.h"
 
 #include "base/error.h"
 #include "base/files.h"
@@ -9,14 +9,10 @@
 #include <tuple>
 #include <vector>
 
-namespace lodestone::light {
+namespace lodestone {
 namespace {
 
-/// The beginning of the file.
-/// Law: another one is another version.
-constexpr std::string_view kMagic = "LDSSKY01";
-
-struct BakeHead {
+struct FindingHead {
     Hash key = 0;
     uint32_t age = 0;
     uint32_t size = 0;
@@ -28,7 +24,8 @@ Hash hash_of_text(std::string_view text) {
 
 }  // namespace
 
-SkyBakes::SkyBakes(std::filesystem::path file) : file_(std::move(file)) {
+FindingsFile::FindingsFile(std::filesystem::path file, std::string_view version)
+    : file_(std::move(file)), version_(version) {
     std::error_code error;
     if (file_.empty() || !std::filesystem::is_regular_file(file_, error))
         return;
@@ -39,16 +36,16 @@ SkyBakes::SkyBakes(std::filesystem::path file) : file_(std::move(file)) {
         return;
     }
     Hash sum = 0;
-    if (text.size() < kMagic.size() + sizeof sum || !text.starts_with(kMagic))
+    if (text.size() < version_.size() + sizeof sum || !text.starts_with(version_))
         return;
     std::string_view rest(text);
     std::memcpy(&sum, text.data() + text.size() - sizeof sum, sizeof sum);
     rest.remove_suffix(sizeof sum);
     if (hash_of_text(rest) != sum)
         return;
-    rest.remove_prefix(kMagic.size());
-    while (rest.size() >= sizeof(BakeHead)) {
-        BakeHead head;
+    rest.remove_prefix(version_.size());
+    while (rest.size() >= sizeof(FindingHead)) {
+        FindingHead head;
         std::memcpy(&head, rest.data(), sizeof head);
         rest.remove_prefix(sizeof head);
         if (head.size > rest.size())
@@ -58,7 +55,8 @@ SkyBakes::SkyBakes(std::filesystem::path file) : file_(std::move(file)) {
     }
 }
 
-std::optional<std::string_view> SkyBakes::find(Hash key) {
+std::optional<std::string> FindingsFile::find(Hash key) {
+    const std::lock_guard lock(mutex_);
     const auto at = kept_.find(key);
     if (at == kept_.end())
         return {};
@@ -66,28 +64,30 @@ std::optional<std::string_view> SkyBakes::find(Hash key) {
     return at->second.bytes;
 }
 
-void SkyBakes::add(Hash key, std::string bytes) {
+void FindingsFile::add(Hash key, std::string bytes) {
+    const std::lock_guard lock(mutex_);
     kept_[key] = {std::move(bytes), 0, true};
     changed_ = true;
 }
 
-void SkyBakes::save() const {
+void FindingsFile::save() {
+    const std::lock_guard lock(mutex_);
     if (file_.empty() || !changed_)
         return;
-    std::vector<std::tuple<uint32_t, Hash, const KeptBake*>> order;  // the youngest first
-    for (const auto& [key, bake] : kept_) {
-        const uint32_t age = bake.used ? 0 : bake.age + 1;
+    std::vector<std::tuple<uint32_t, Hash, const KeptFinding*>> order;  // the youngest first
+    for (const auto& [key, finding] : kept_) {
+        const uint32_t age = finding.used ? 0 : finding.age + 1;
         if (age <= kMostAge)
-            order.emplace_back(age, key, &bake);
+            order.emplace_back(age, key, &finding);
     }
     std::sort(order.begin(), order.end());
-    std::string text(kMagic);
-    for (const auto& [age, key, bake] : order) {
-        if (text.size() + sizeof(BakeHead) + bake->bytes.size() > kMostBytes)
+    std::string text(version_);
+    for (const auto& [age, key, finding] : order) {
+        if (text.size() + sizeof(FindingHead) + finding->bytes.size() > kMostBytes)
             break;
-        const BakeHead head{key, age, static_cast<uint32_t>(bake->bytes.size())};
+        const FindingHead head{key, age, static_cast<uint32_t>(finding->bytes.size())};
         text.append(reinterpret_cast<const char*>(&head), sizeof head);
-        text += bake->bytes;
+        text += finding->bytes;
     }
     const Hash sum = hash_of_text(text);
     text.append(reinterpret_cast<const char*>(&sum), sizeof sum);
@@ -98,6 +98,7 @@ void SkyBakes::save() const {
     } catch (const Error&) {
         return;  // the next picture finds it again
     }
+    changed_ = false;
 }
 
-}  // namespace lodestone::light
+}  // namespace lodestone
