@@ -5,6 +5,7 @@
 #include "image/texture_sampler.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lodestone::image {
@@ -24,9 +25,9 @@ int first_of(int index, int small, int count) {
 }
 
 // Law: below 0.1, in steps of 255.
-constexpr int kClear = 25;
+constexpr unsigned kClear = 25;
 // Law: above 0.9, in steps of 255.
-constexpr int kFull = 230;
+constexpr unsigned kFull = 230;
 
 bool is_sure(uint8_t alpha) {
     return alpha <= kClear || alpha >= kFull;
@@ -44,6 +45,11 @@ bool near_sure(const MaskTexels& texels, int x, int y) {
             return true;
     }
     return false;
+}
+
+bool is_edge(const MaskTexels& texels, int x, int y) {
+    const size_t at = static_cast<size_t>(y) * static_cast<size_t>(texels.width);
+    return !is_sure(texels.alpha[at + static_cast<size_t>(x)]) && near_sure(texels, x, y);
 }
 
 }  // namespace
@@ -64,15 +70,23 @@ MaskTexels mask_texels(const Texture& texture) {
         for (size_t i = 0; i < row.size(); i += 4)
             out.alpha.push_back(static_cast<uint8_t>(row[i]));
     }
+    out.edges.reserve(out.size());
+    for (int y = 0; y < out.height; ++y) {
+        for (int x = 0; x < out.width; ++x)
+            out.edges.push_back(is_edge(out, x, y) ? 1 : 0);
+    }
     return out;
 }
 
 SeenTexels unseen_texels(int width, int height) {
     SeenTexels out;
-    while ((std::max(width, height) + out.side - 1) / out.side > kMostBlocks)
+    while ((int64_t{std::max(width, height)} + out.side - 1) / out.side > kMostBlocks)
         out.side *= 2;
-    out.columns = (width + out.side - 1) / out.side;
-    out.rows = (height + out.side - 1) / out.side;
+    const auto blocks = [&out](int texels) {
+        return static_cast<int>((int64_t{texels} + out.side - 1) / out.side);
+    };
+    out.columns = blocks(width);
+    out.rows = blocks(height);
     out.blocks.resize(static_cast<size_t>(out.columns) * static_cast<size_t>(out.rows));
     return out;
 }
@@ -94,13 +108,12 @@ bool MaskCount::is_mask() const {
 
 MaskCount count(const MaskTexels& texels, const SeenTexels& seen) {
     MaskCount out;
-    uint64_t sum = 0;
-    uint64_t squares = 0;
-    uint64_t clear = 0;
-    uint64_t full = 0;
+    std::array<uint64_t, 256> counts{};  // by alpha
+    const bool known = !texels.edges.empty();
     for (int y = 0; y < texels.height; ++y) {
-        const uint8_t* row =
-            texels.alpha.data() + static_cast<size_t>(y) * static_cast<size_t>(texels.width);
+        const size_t first = static_cast<size_t>(y) * static_cast<size_t>(texels.width);
+        const uint8_t* row = texels.alpha.data() + first;
+        const uint8_t* edges = known ? texels.edges.data() + first : nullptr;
         const uint8_t* flags = seen.blocks.data() + static_cast<size_t>(y / seen.side) *
                                                         static_cast<size_t>(seen.columns);
         for (int column = 0; column < seen.columns; ++column) {
@@ -108,18 +121,25 @@ MaskCount count(const MaskTexels& texels, const SeenTexels& seen) {
                 continue;
             const int end = std::min((column + 1) * seen.side, texels.width);
             for (int x = column * seen.side; x < end; ++x) {
-                ++out.seen;
-                out.clear += row[x] <= kClear ? 1u : 0u;
-                clear += row[x] <= kClear ? row[x] : 0u;
-                full += row[x] >= kFull ? row[x] : 0u;
-                if (is_sure(row[x]))
-                    ++out.sure;
-                else if (near_sure(texels, x, y))
-                    ++out.edge;
-                sum += row[x];
-                squares += uint64_t{row[x]} * row[x];
+                ++counts[row[x]];
+                out.edge += known ? edges[x] : (is_edge(texels, x, y) ? 1u : 0u);
             }
         }
+    }
+    uint64_t sum = 0;
+    uint64_t squares = 0;
+    uint64_t clear = 0;
+    uint64_t full = 0;
+    for (size_t alpha = 0; alpha < counts.size(); ++alpha) {
+        const uint64_t some = counts[alpha];
+        const uint64_t times = alpha * some;
+        out.seen += some;
+        out.sure += is_sure(static_cast<uint8_t>(alpha)) ? some : 0;
+        out.clear += alpha <= kClear ? some : 0;
+        clear += alpha <= kClear ? times : 0;
+        full += alpha >= kFull ? times : 0;
+        sum += times;
+        squares += alpha * times;
     }
     if (out.seen == 0)
         return out;

@@ -15,6 +15,7 @@ struct MaskTexels {
     int width = 0;
     int height = 0;
     std::vector<uint8_t> alpha;
+    std::vector<uint8_t> edges = {};  // by texel: MaskCount::edge counts it; none: not found yet
 
     size_t size() const { return alpha.size(); }
 };

@@ -101,6 +101,25 @@ TEST(MaskTexels, OnlyWhatIsSeenDecides) {
     EXPECT_NEAR(found.mean, 0.5, 1e-12);
 }
 
+TEST(MaskTexels, EdgesThatAreKnownCountAsThoseThatAreNot) {
+    // Edges of all widths, up to the border of the picture.
+    MaskTexels texels = mask_texels(texture_of(200, 90, [](int x, int y) {
+        return 0.5f + 0.5f * std::sin(0.002f * static_cast<float>(x * x + y * y));
+    }));
+    SeenTexels seen = everything(texels);
+    for (size_t i = 0; i < seen.blocks.size(); i += 3)
+        seen.blocks[i] = 0;
+    ASSERT_EQ(texels.edges.size(), texels.size());
+    const MaskCount known = count(texels, seen);
+    texels.edges.clear();
+    const MaskCount found = count(texels, seen);
+    EXPECT_GT(known.edge, 100u);
+    EXPECT_LT(known.edge + known.sure, known.seen);
+    EXPECT_EQ(known.edge, found.edge);
+    EXPECT_EQ(known.mean, found.mean);
+    EXPECT_EQ(known.spread, found.spread);
+}
+
 TEST(MaskTexels, HalvingKeepsTheMeanAndACutoffItsShare) {
     const auto alpha = [](int x, int y) { return (x * 7 + y * 3) % 10 < 3 ? 0.9f : 0.2f; };
     const MaskTexels texels = mask_texels(texture_of(64, 48, alpha));
