@@ -156,8 +156,7 @@ bool CutPlan::place(const Texture& texture, uint32_t triangle, glm::dvec2 (&at)[
 /// The outline of a mask as finely as it is seen. Of a crowd of leaves it is coarser where it
 /// would have too many corners: rays take ten times as long through masks as past what is cut
 /// out of them.
-MaskOutlinePtr CutPlan::outline_that_fits(const ShownMask& mask, const image::MaskTexels& texels,
-                                          bool crowd) const {
+MaskOutlinePtr CutPlan::outline_that_fits(const ShownMask& mask, bool crowd) const {
     // The factor on the tolerance up to which it is coarser.
     // Taste: leaves in a crowd keep their area; a larger value shows corners of single leaves.
     constexpr double kCoarser = 16;
@@ -165,8 +164,9 @@ MaskOutlinePtr CutPlan::outline_that_fits(const ShownMask& mask, const image::Ma
     // Taste: branches of a picture across are told apart; a larger value makes them blobs.
     constexpr double kOfSide = 1.0 / 16;
     const double finest = std::max(1.0, mask.tolerance);
+    const Picture& picture = *mask.texture.picture;
     const double most =
-        std::min(kCoarser * finest, kOfSide * std::min(texels.width, texels.height));
+        std::min(kCoarser * finest, kOfSide * std::min(picture.width, picture.height));
     ShownMask shown = mask;
     MaskOutlinePtr found = outlines_.outline(shown, job_);
     for (double tolerance = finest; crowd && !found && tolerance < most;) {
@@ -200,8 +200,7 @@ bool CutPlan::coarsen(const CutSlot& slot, CutBand& band) const {
     const Texture& texture = slot.material->alpha_texture;
     const size_t corners = band.outline->inside.points.size() - 1;
     const MaskOutlinePtr next =
-        outline_that_fits({texture, slot.cutoff, slot.seen, band.tolerance, corners},
-                          *outlines_.texels(texture), true);
+        outline_that_fits({texture, slot.cutoff, slot.seen, band.tolerance, corners}, true);
     if (next)
         band.outline = next;
     return next != nullptr;
@@ -211,8 +210,7 @@ bool CutPlan::coarsen(const CutSlot& slot, CutBand& band) const {
 bool CutPlan::find_outlines_of(CutSlot& slot) const {
     const Material& material = *slot.material;
     const Texture& texture = material.alpha_texture;
-    const MaskTexelsPtr texels = outlines_.texels(texture);
-    slot.seen = image::unseen_texels(texels->width, texels->height);
+    slot.seen = image::unseen_texels(texture.picture->width, texture.picture->height);
     double pictures = 0;  // that all triangles together show
     for (CutBand& band : slot.bands) {
         for (const uint32_t triangle : band.triangles) {
@@ -225,7 +223,7 @@ bool CutPlan::find_outlines_of(CutSlot& slot) const {
         }
         pictures += band.pictures;
     }
-    const image::MaskCount count = image::count(*texels, slot.seen);
+    const image::MaskCount count = outlines_.count(texture, slot.seen);
     const bool clip = material.alpha_mode == AlphaMode::Clip;
     if (count.seen == 0)
         return false;
@@ -245,15 +243,14 @@ bool CutPlan::find_outlines_of(CutSlot& slot) const {
     }
     bool any = slot.full;
     for (CutBand& band : slot.bands) {
-        find_outline(slot, mask, *texels, band);
+        find_outline(slot, mask, band);
         any = any || band.outline;
     }
     return any;
 }
 
 /// Finds how a band of a slot is cut; `mask`: by the outline of its mask, if that pays.
-void CutPlan::find_outline(const CutSlot& slot, bool mask, const image::MaskTexels& texels,
-                           CutBand& band) const {
+void CutPlan::find_outline(const CutSlot& slot, bool mask, CutBand& band) const {
     const Texture& texture = slot.material->alpha_texture;
     const size_t bands = slot.bands.size();
     band.most = std::clamp((slot.crowd ? kMostInCrowd : kMostEach) * band.triangles.size(),
@@ -268,8 +265,8 @@ void CutPlan::find_outline(const CutSlot& slot, bool mask, const image::MaskTexe
                                           (kMore * std::max(band.pictures, 1e-3)));
     band.hull_corners = most * kMostTrimmed / kMostEach;
     if (mask && !slot.full)
-        band.outline = outline_that_fits({texture, slot.cutoff, slot.seen, band.tolerance, most},
-                                         texels, slot.crowd);
+        band.outline =
+            outline_that_fits({texture, slot.cutoff, slot.seen, band.tolerance, most}, slot.crowd);
     band.opaque = slot.full || band.outline;
     if (!band.opaque)
         band.outline = outlines_.hull(texture, band.hull_corners, job_);

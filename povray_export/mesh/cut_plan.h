@@ -68,11 +68,9 @@ private:
     double tolerance_of(const Material& material, std::span<const uint32_t> triangles,
                         double times) const;
     bool painted_clear(const CutSlot& slot) const;
-    MaskOutlinePtr outline_that_fits(const ShownMask& mask, const image::MaskTexels& texels,
-                                     bool crowd) const;
+    MaskOutlinePtr outline_that_fits(const ShownMask& mask, bool crowd) const;
     bool find_outlines_of(CutSlot& slot) const;
-    void find_outline(const CutSlot& slot, bool mask, const image::MaskTexels& texels,
-                      CutBand& band) const;
+    void find_outline(const CutSlot& slot, bool mask, CutBand& band) const;
 
     const Model& model_;
     const Representation& representation_;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/mesh/mask_outlines.h"
 
+#include "base/error.h"
 #include "geometry/ring_simplification.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 
 namespace lodestone::povray {
 namespace {
@@ -47,16 +50,17 @@ bool closest(const Texture& texture) {
 }
 
 /// The fewest halvings of a picture that is outlined.
-int least_halvings(const image::MaskTexels& texels) {
+int least_halvings(const Picture& picture) {
+    const size_t texels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
     int halvings = 0;
-    while ((texels.size() >> (2 * static_cast<unsigned>(halvings))) > kMostTexels)
+    while ((texels >> (2 * static_cast<unsigned>(halvings))) > kMostTexels)
         ++halvings;
     return halvings;
 }
 
-int halvings_of(const image::MaskTexels& texels, double tolerance) {
-    const int side = std::min(texels.width, texels.height);
-    int halvings = least_halvings(texels);
+int halvings_of(const Picture& picture, double tolerance) {
+    const int side = std::min(picture.width, picture.height);
+    int halvings = least_halvings(picture);
     while ((side >> (halvings + 1)) >= kLeastSide &&
            (kOfMean + kPart) * std::ldexp(1.0, halvings + 1) <= tolerance)
         ++halvings;
@@ -160,7 +164,7 @@ double between_steps(double level) {
 double share_of(const ShownMask& mask, const image::MaskTexels& texels) {
     if (!mask.cutoff)
         return image::count(texels, mask.seen).mean;
-    image::MaskTexels binary = texels;
+    image::MaskTexels binary{texels.width, texels.height, texels.alpha};
     for (uint8_t& alpha : binary.alpha)
         alpha = alpha >= 255 * *mask.cutoff ? 255 : 0;
     return image::count(binary, mask.seen).mean;
@@ -180,6 +184,94 @@ double level_of(const ShownMask& mask, const image::MaskTexels& texels, int halv
         level = std::clamp(level, between_steps(0.1), between_steps(0.9));
     const double missed = std::abs(picture.grid.area(level, seen) - wanted);
     return missed <= kMostMissed * wanted + 0.5 ? level : -1;
+}
+
+/// The corners of rings that are too many.
+/// Law: no rings have as many.
+constexpr uint64_t kTooMany = ~uint64_t{0};
+
+/// The beginning of the file that keeps outlines: raised whenever what is found of a mask changes.
+/// Law: another one is another version.
+constexpr std::string_view kVersion = "LDSMSK01";
+
+template <typename Value>
+requires std::is_trivially_copyable_v<Value> std::string bytes_of(const Value& value) {
+    return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+template <typename Value>
+requires std::is_trivially_copyable_v<Value>
+bool take(std::string_view bytes, Value& value) {
+    if (bytes.size() != sizeof value)
+        return false;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return true;
+}
+
+bool take(std::string_view bytes, image::MaskCount& count) {
+    if (!take<image::MaskCount>(bytes, count))
+        return false;
+    const auto share = [](double value) { return value >= 0 && value <= 1; };
+    return count.sure <= count.seen && count.clear <= count.sure &&
+           count.edge <= count.seen - count.sure && share(count.mean) && share(count.clear_mean) &&
+           share(count.full_mean) && std::isfinite(count.spread);
+}
+
+bool take(std::string_view bytes, double& value) {
+    return take<double>(bytes, value) && std::isfinite(value);
+}
+
+/// Law: an outline's numbers of points and of triangles, before them.
+struct OutlineHead {
+    uint64_t points = 0;
+    uint64_t triangles = 0;
+};
+
+/// "": there is none.
+std::string bytes_of(const MaskOutlinePtr& outline) {
+    if (!outline)
+        return "";
+    const PlaneTriangles& inside = outline->inside;
+    std::string out = bytes_of(OutlineHead{inside.points.size(), inside.triangles.size()});
+    out.append(reinterpret_cast<const char*>(inside.points.data()),
+               inside.points.size() * sizeof(glm::dvec2));
+    out.append(reinterpret_cast<const char*>(inside.triangles.data()),
+               inside.triangles.size() * sizeof(glm::uvec3));
+    return out;
+}
+
+bool take(std::string_view bytes, MaskOutlinePtr& outline) {
+    // The farthest corner of an outline, in pictures.
+    // Law: those of pictures that repeat lie half a texel outside at most.
+    constexpr double kFarthest = 2;
+    outline = nullptr;
+    if (bytes.empty())
+        return true;
+    OutlineHead head;
+    if (bytes.size() < sizeof head)
+        return false;
+    std::memcpy(&head, bytes.data(), sizeof head);
+    bytes.remove_prefix(sizeof head);
+    if (head.points > bytes.size() / sizeof(glm::dvec2) ||
+        head.triangles > bytes.size() / sizeof(glm::uvec3) ||
+        bytes.size() != head.points * sizeof(glm::dvec2) + head.triangles * sizeof(glm::uvec3))
+        return false;
+    auto out = std::make_shared<MaskOutline>();
+    out->inside.points.resize(head.points);
+    out->inside.triangles.resize(head.triangles);
+    std::memcpy(out->inside.points.data(), bytes.data(), head.points * sizeof(glm::dvec2));
+    bytes.remove_prefix(head.points * sizeof(glm::dvec2));
+    std::memcpy(out->inside.triangles.data(), bytes.data(), head.triangles * sizeof(glm::uvec3));
+    for (const glm::dvec2& point : out->inside.points) {
+        if (!(std::abs(point.x) <= kFarthest && std::abs(point.y) <= kFarthest))
+            return false;
+    }
+    for (const glm::uvec3& triangle : out->inside.triangles) {
+        if (std::max({triangle.x, triangle.y, triangle.z}) >= head.points)
+            return false;
+    }
+    outline = out;
+    return true;
 }
 
 }  // namespace
@@ -202,53 +294,97 @@ const Value& MaskOutlines::SharedValues<Value>::of(Hash key, const std::function
     return entry->value;
 }
 
+MaskOutlines::MaskOutlines(std::filesystem::path file)
+    : findings_(file, kVersion), keeps_(!file.empty()) {}
+
+template <typename Value>
+Value MaskOutlines::kept_or(std::string_view purpose, Hash key,
+                            const std::function<Value()>& make) {
+    if (!keeps_)
+        return make();
+    const Hash own = Hasher().text(purpose).value(key).result();
+    const std::optional<std::string> kept = findings_.find(own);
+    Value value{};
+    if (kept && take(*kept, value))
+        return value;
+    value = make();
+    findings_.add(own, bytes_of(value));
+    return value;
+}
+
 MaskTexelsPtr MaskOutlines::texels(const Texture& texture) {
-    return texels_.of(content_of(texture), [&] {
-        return std::make_shared<const image::MaskTexels>(image::mask_texels(texture));
+    return texels_.of(content_of(texture), [&]() -> MaskTexelsPtr {
+        auto found = std::make_shared<const image::MaskTexels>(image::mask_texels(texture));
+        const Picture& picture = *texture.picture;
+        if (found->width != picture.width || found->height != picture.height)
+            fail(Status::BadFile, "'", picture.name, "' is ", found->width, " x ", found->height,
+                 " texels, not ", picture.width, " x ", picture.height);
+        return found;
     });
 }
 
-MaskOutlines::OutlineRingsPtr MaskOutlines::rings_of(const ShownMask& mask,
-                                                     const image::MaskTexels& texels, int halvings,
-                                                     double level, double tolerance) {
-    const OutlinedPicture picture = outlined(mask, texels, halvings);
-    auto out = std::make_shared<OutlineRings>();
-    out->size = {picture.grid.width(), picture.grid.height()};
-    bool too_many = false;
-    // Law: leaving out corners by less than a texel leaves one of some crossings.
-    constexpr size_t kMostCrossings = 16 * kMostCorners;
-    const std::vector<Ring> rings = picture.grid.rings(level, kMostCrossings, too_many);
-    if (too_many)
-        return nullptr;
-    for (const Ring& ring : rings) {
-        out->area += signed_area(ring);
-        out->simple.push_back(simplified(ring, tolerance, {out->size.x, out->size.y}));
-        out->corners += out->simple.back().size();
-    }
-    return out->corners <= kMostCorners ? out : nullptr;
+image::MaskCount MaskOutlines::count(const Texture& texture, const image::SeenTexels& seen) {
+    const Hash key =
+        Hasher().value(content_of(texture)).array(std::span<const uint8_t>(seen.blocks)).result();
+    return counts_.of(key, [&] {
+        return kept_or<image::MaskCount>("count", key,
+                                         [&] { return image::count(*texels(texture), seen); });
+    });
 }
 
-MaskOutlinePtr MaskOutlines::outline_at(const ShownMask& mask, const image::MaskTexels& texels,
-                                        int halvings, double level, Hash key, const Job& job) {
+MaskOutlines::OutlineRingsPtr MaskOutlines::rings(const ShownMask& mask, int halvings, double level,
+                                                  double tolerance, Hash key) {
+    return rings_.of(key, [&]() -> OutlineRingsPtr {
+        const OutlinedPicture picture = outlined(mask, *texels(mask.texture), halvings);
+        auto out = std::make_shared<OutlineRings>();
+        out->size = {picture.grid.width(), picture.grid.height()};
+        bool too_many = false;
+        // Law: leaving out corners by less than a texel leaves one of some crossings.
+        constexpr size_t kMostCrossings = 16 * kMostCorners;
+        const std::vector<Ring> rings = picture.grid.rings(level, kMostCrossings, too_many);
+        if (too_many)
+            return nullptr;
+        for (const Ring& ring : rings) {
+            out->area += signed_area(ring);
+            out->simple.push_back(simplified(ring, tolerance, {out->size.x, out->size.y}));
+            out->corners += out->simple.back().size();
+        }
+        return out->corners <= kMostCorners ? out : nullptr;
+    });
+}
+
+MaskOutlinePtr MaskOutlines::outline_at(const ShownMask& mask, int halvings, double level, Hash key,
+                                        const Job& job) {
     // Outlines that are nearer to each other than the tolerance may cross: then it is made smaller.
     const double part = part_of(mask.tolerance, halvings);
     for (int halving = 0; halving < 4; ++halving) {
         const double tolerance = std::ldexp(part, -halving);
         const Hash own = Hasher().value(key).value(tolerance).result();
-        const OutlineRingsPtr rings =
-            rings_.of(own, [&] { return rings_of(mask, texels, halvings, level, tolerance); });
-        if (!rings || rings->corners > mask.most_corners)
+        const auto made = [&] { return rings(mask, halvings, level, tolerance, own); };
+        const uint64_t corners = corners_.of(own, [&] {
+            return kept_or<uint64_t>("corners", own, [&]() -> uint64_t {
+                const OutlineRingsPtr found = made();
+                return found ? found->corners : kTooMany;
+            });
+        });
+        if (corners > kMostCorners || corners > mask.most_corners)
             return nullptr;
-        MaskOutlinePtr found = outlines_.of(own, [&]() -> MaskOutlinePtr {
-            auto out = std::make_shared<MaskOutline>();
-            out->inside = triangulated(rings->simple, job);
-            // The area of triangles that are missing or lie one on the other.
-            // Taste: half a texel of a hundred is not seen; a larger value lets them cross more.
-            if (std::abs(out->inside.area() - rings->area) > 0.005 * rings->area + 0.5)
-                return nullptr;
-            for (glm::dvec2& point : out->inside.points)
-                point /= rings->size;
-            return out;
+        MaskOutlinePtr found = outlines_.of(own, [&] {
+            return kept_or<MaskOutlinePtr>("outline", own, [&]() -> MaskOutlinePtr {
+                const OutlineRingsPtr rings = made();
+                if (!rings)
+                    return nullptr;
+                auto out = std::make_shared<MaskOutline>();
+                out->inside = triangulated(rings->simple, job);
+                // The area of triangles that are missing or lie one on the other.
+                // Taste: half a texel of a hundred is not seen; a larger value lets them cross
+                // more.
+                if (std::abs(out->inside.area() - rings->area) > 0.005 * rings->area + 0.5)
+                    return nullptr;
+                for (glm::dvec2& point : out->inside.points)
+                    point /= rings->size;
+                return out;
+            });
         });
         if (found)
             return found;
@@ -257,9 +393,9 @@ MaskOutlinePtr MaskOutlines::outline_at(const ShownMask& mask, const image::Mask
 }
 
 MaskOutlinePtr MaskOutlines::outline(const ShownMask& mask, const Job& job) {
-    const MaskTexelsPtr texels = this->texels(mask.texture);
-    const int least = least_halvings(*texels);
-    for (int halvings = halvings_of(*texels, mask.tolerance); halvings >= least; --halvings) {
+    const Picture& shown = *mask.texture.picture;
+    const int least = least_halvings(shown);
+    for (int halvings = halvings_of(shown, mask.tolerance); halvings >= least; --halvings) {
         Hasher picture;
         picture.value(content_of(mask.texture))
             .value(mask.texture.interpolation)
@@ -268,11 +404,12 @@ MaskOutlinePtr MaskOutlines::outline(const ShownMask& mask, const Job& job) {
             .value(mask.cutoff ? *mask.cutoff : -1.0);
         Hasher use = picture;
         use.array(std::span<const uint8_t>(mask.seen.blocks));
-        const double level =
-            levels_.of(use.result(), [&] { return level_of(mask, *texels, halvings); });
-        if (level < 0)
-            continue;
-        return outline_at(mask, *texels, halvings, level, picture.value(level).result(), job);
+        const double level = levels_.of(use.result(), [&] {
+            return kept_or<double>("level", use.result(),
+                                   [&] { return level_of(mask, *texels(mask.texture), halvings); });
+        });
+        if (level >= 0 && level <= 2)
+            return outline_at(mask, halvings, level, picture.value(level).result(), job);
     }
     return nullptr;
 }
@@ -282,17 +419,19 @@ MaskOutlinePtr MaskOutlines::hull(const Texture& texture, size_t most_corners, c
     // Taste: a larger value leaves fewer clear texels in, for more triangles.
     constexpr int kFinest = 64;
     constexpr int kCoarsest = 8;  // Taste: what is coarser is the whole picture.
-    const MaskTexelsPtr texels = this->texels(texture);
-    for (int halvings = 0; std::max(texels->width, texels->height) >> halvings >= kCoarsest;
-         ++halvings) {
-        if (std::max(texels->width, texels->height) >> halvings > kFinest)
+    const int side = std::max(texture.picture->width, texture.picture->height);
+    for (int halvings = 0; side >> halvings >= kCoarsest; ++halvings) {
+        if (side >> halvings > kFinest)
             continue;
         const Hash key = Hasher()
                              .value(content_of(texture))
                              .value(texture.extension == TextureExtension::Repeat)
                              .value(halvings)
                              .result();
-        MaskOutlinePtr found = hulls_.of(key, [&] { return hull_at(texture, halvings, job); });
+        MaskOutlinePtr found = hulls_.of(key, [&] {
+            return kept_or<MaskOutlinePtr>("hull", key,
+                                           [&] { return hull_at(texture, halvings, job); });
+        });
         if (!found)
             return nullptr;
         if (found->inside.points.size() <= most_corners)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mask outlines: the part of a picture where its alpha says that something is, as triangles. A
-// picture is outlined once for all its uses in one export.
+// picture is outlined once for all its uses in one export, and in later ones if a file keeps it.
 #pragma once
 
+#include "base/findings_file.h"
 #include "base/job.h"
 #include "geometry/ring_triangulation.h"
 #include "image/mask_texels.h"
@@ -31,11 +32,17 @@ struct ShownMask {
     size_t most_corners = ~size_t{0};  // of the outline; more are not worth it
 };
 
-/// The outlines of one export. May be used from any thread; no answer depends on the order.
+/// The outlines of one export. May be used from any thread; no answer depends on the order, nor on
+/// what was kept.
 class MaskOutlines {
 public:
+    /// `file`: what keeps them from export to export; "": nothing does.
+    explicit MaskOutlines(std::filesystem::path file = {});
+
     /// The alpha of a texture. Throws Error(BadFile).
     MaskTexelsPtr texels(const Texture& texture);
+    /// What is seen of them. Throws Error(BadFile).
+    image::MaskCount count(const Texture& texture, const image::SeenTexels& seen);
 
     /// The outline of a mask, of whose alpha the area that is seen keeps the mean: the level is
     /// shifted, and corners are left out without a change of area. Null where it has more corners
@@ -51,6 +58,9 @@ public:
     /// Taste: a larger value cuts out finer nets, for triangles as many and time that grows with
     /// their square.
     static constexpr size_t kMostCorners = 8192;
+
+    /// What else is found of masks and belongs into the same file.
+    FindingsFile& findings() { return findings_; }
 
 private:
     template <typename Value>
@@ -75,16 +85,24 @@ private:
     };
     using OutlineRingsPtr = std::shared_ptr<const OutlineRings>;
 
-    static OutlineRingsPtr rings_of(const ShownMask& mask, const image::MaskTexels& texels,
-                                    int halvings, double level, double tolerance);
-    MaskOutlinePtr outline_at(const ShownMask& mask, const image::MaskTexels& texels, int halvings,
-                              double level, Hash key, const Job& job);
-
+    /// The rings of a mask at a level; null where they are too many.
+    OutlineRingsPtr rings(const ShownMask& mask, int halvings, double level, double tolerance,
+                          Hash key);
+    MaskOutlinePtr outline_at(const ShownMask& mask, int halvings, double level, Hash key,
+                              const Job& job);
     MaskOutlinePtr hull_at(const Texture& texture, int halvings, const Job& job);
 
+    /// What is kept of a key for one purpose, else what is made and kept now.
+    template <typename Value>
+    Value kept_or(std::string_view purpose, Hash key, const std::function<Value()>& make);
+
+    FindingsFile findings_;
+    bool keeps_ = false;
     SharedValues<MaskTexelsPtr> texels_;
+    SharedValues<image::MaskCount> counts_;
     SharedValues<double> levels_;
     SharedValues<OutlineRingsPtr> rings_;
+    SharedValues<uint64_t> corners_;  // of rings; kTooMany where they are null
     SharedValues<MaskOutlinePtr> outlines_;
     SharedValues<MaskOutlinePtr> hulls_;
 };

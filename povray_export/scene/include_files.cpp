@@ -9,6 +9,7 @@
 #include "povray_export/texture/texture_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -132,14 +133,26 @@ void IncludeFiles::merge() {
     }
 }
 
-/// The forecast of how a file is cut, which takes long to find: it is kept.
+/// The forecast of how a file is cut, which takes long to find: it is kept, in the scene's folder and
+/// with what else is found of masks.
 CutForecast IncludeFiles::forecast(Hash name, const IncludeFile& include, const Job& job) {
     const std::filesystem::path path = folder_ / "r" / (hex16(name) + ".cut");
+    const Hash key = Hasher().text("forecast").value(name).result();
     CutForecast out;
-    std::ifstream kept(path);
-    if (kept >> out.by_outline >> out.triangles)
+    std::ifstream written(path);
+    if (written >> out.by_outline >> out.triangles)
         return out;
-    out = cut_forecast(model_, *include.representation, include.options, outlines_, job);
+    std::array<uint64_t, 2> numbers{};
+    const std::string kept = outlines_.findings().find(key).value_or("");
+    if (kept.size() == sizeof numbers) {
+        std::memcpy(numbers.data(), kept.data(), sizeof numbers);
+        out = {numbers[0] != 0, numbers[1]};
+    } else {
+        out = cut_forecast(model_, *include.representation, include.options, outlines_, job);
+        numbers = {out.by_outline ? 1u : 0u, out.triangles};
+        outlines_.findings().add(key,
+                                 {reinterpret_cast<const char*>(numbers.data()), sizeof numbers});
+    }
     write_file(path, text(out.by_outline ? 1 : 0, ' ', out.triangles, '\n'));
     return out;
 }
@@ -271,6 +284,7 @@ void IncludeFiles::write(const Job& job) {
         include.cpu_s = thread_cpu_seconds() - start;
         job.progress(static_cast<double>(++done) / static_cast<double>(files_.size() + 1));
     });
+    outlines_.findings().save();
 }
 
 std::string IncludeFiles::statements() const {

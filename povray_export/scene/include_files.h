@@ -35,8 +35,13 @@ struct IncludeFile {
 /// The include files of one scene. The model must outlive them.
 class IncludeFiles {
 public:
-    IncludeFiles(const Model& model, std::filesystem::path folder)
-        : model_(model), folder_(std::move(folder)), pictures_(folder_) {}
+    /// `findings`: the folder that keeps what was found of masks and pictures; "": none does.
+    IncludeFiles(const Model& model, std::filesystem::path folder,
+                 const std::filesystem::path& findings)
+        : model_(model),
+          folder_(std::move(folder)),
+          pictures_(folder_, findings.empty() ? findings : findings / "baked"),
+          outlines_(findings.empty() ? findings : findings / "masks.bin") {}
 
     /// Adds a representation and returns the index of its file; copies share one. Where it shows
     /// masks their outlines may be off by `outline` metres of its own frame, at the nearest copy:

@@ -67,7 +67,7 @@ public:
           job_(job),
           shading_(shading_of(options, view.pixel_error)),
           pixels_(model, view),
-          includes_(model, options.folder) {
+          includes_(model, options.folder, options.bakes) {
         report_.lamps = static_cast<uint64_t>(
             std::count_if(model_.lights.begin(), model_.lights.end(), light::is_lamp));
     }

@@ -167,8 +167,9 @@ std::string PictureWriter::file_of(const Texture& texture, PigmentContent conten
         for (int i = 0; i < 3; ++i)
             hasher.value(texture.scale[i]).value(texture.offset[i]);
     }
+    file.hash = hasher.result();
     std::string name =
-        "i/" + hex16(hasher.result()) + '.' + (file.as_is ? suffix_of(picture.format) : "png");
+        "i/" + hex16(file.hash) + '.' + (file.as_is ? suffix_of(picture.format) : "png");
     files_.try_emplace(name, std::move(file));
     return name;
 }
@@ -249,9 +250,10 @@ std::string PictureWriter::declarations() const {
 
 void PictureWriter::write(PictureFolder& folder) const {
     for (const auto& [name, file] : files_)
-        folder.add(name, [&file = file] {
-            return file.as_is ? file.texture.picture->bytes
-                              : pigment_picture(file.texture, file.content, file.halvings);
+        folder.add(name, [&file = file, &folder] {
+            return file.as_is ? file.texture.picture->bytes : folder.baked(file.hash, [&file] {
+                return pigment_picture(file.texture, file.content, file.halvings);
+            });
         });
 }
 
@@ -269,6 +271,15 @@ void PictureFolder::add(const std::string& name, const std::function<std::string
         fail(Status::Io, "cannot make the folder '", (folder_ / "i").string(),
              "': ", error.message());
     write_file(folder_ / name, bytes());
+}
+
+std::string PictureFolder::baked(Hash key, const std::function<std::string()>& bytes) {
+    std::optional<std::string> kept = baked_.find(key);
+    if (kept)
+        return std::move(*kept);
+    std::string made = bytes();
+    baked_.add(key, made);
+    return made;
 }
 
 bool PictureFolder::found(const std::vector<std::string>& names) {

@@ -2,6 +2,7 @@
 // Picture writer: textures as POV-Ray's pigments, and the picture files below i/ that they show.
 #pragma once
 
+#include "base/findings_folder.h"
 #include "model/texture.h"
 
 #include <filesystem>
@@ -36,10 +37,14 @@ struct UvRange {
 /// The folder i/ below a scene's folder; all threads of one export share it.
 class PictureFolder {
 public:
-    explicit PictureFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    /// `baked`: the folder that keeps pictures that are not files as they are; "": none does.
+    explicit PictureFolder(std::filesystem::path folder, std::filesystem::path baked = {})
+        : folder_(std::move(folder)), baked_(std::move(baked), ".png") {}
 
     /// Writes the file, unless it is there, or is being written by another thread.
     void add(const std::string& name, const std::function<std::string()>& bytes);
+    /// The bytes that are kept for a key, else those that are made and kept now.
+    std::string baked(Hash key, const std::function<std::string()>& bytes);
     /// Counts files that an old text names; false when one is missing.
     bool found(const std::vector<std::string>& names);
 
@@ -52,6 +57,7 @@ public:
 
 private:
     std::filesystem::path folder_;
+    FindingsFolder baked_;
     mutable std::mutex mutex_;
     std::map<std::string, bool> names_;  // true: written now
 };
@@ -88,6 +94,7 @@ private:
         PigmentContent content = PigmentContent::Color;
         bool as_is = false;  // true: the picture's own bytes
         int halvings = 0;
+        Hash hash = 0;  // of all that its bytes depend on
     };
 
     std::string file_of(const Texture& texture, PigmentContent content, int halvings);

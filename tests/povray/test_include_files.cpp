@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards which meshes with masks share a file, what is kept of them, and what they take together.
+#include "base/findings_file.h"
 #include "povray/mask_cards.h"
+#include "scenes/damaged_files.h"
+
+#include <cstring>
+#include <map>
 
 using namespace lodestone;
 using namespace lodestone::povray;
@@ -27,6 +32,29 @@ ExportOptions fresh_folder(const char* name) {
     options.folder = own_scratch() / name;
     std::filesystem::remove_all(options.folder);
     return options;
+}
+
+/// The contents of all files below a folder.
+std::map<std::string, std::string> contents(const std::filesystem::path& folder) {
+    std::map<std::string, std::string> out;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file())
+            out[entry.path().lexically_relative(folder).string()] = read_file(entry.path());
+    }
+    return out;
+}
+
+/// What is exported into a new folder where findings are kept in another one.
+std::map<std::string, std::string> exported_with(const std::filesystem::path& findings,
+                                                 const Material& material) {
+    Mesh blend = card();
+    for (glm::vec2& uv : blend.uvs)
+        uv = 0.4f * uv + 0.1f;
+    ExportOptions options = fresh_folder("scene");
+    options.bakes = findings;
+    Problems problems;
+    exported({card(), blend}, material, options, problems);
+    return contents(options.folder);
 }
 
 }  // namespace
@@ -63,6 +91,78 @@ TEST(IncludeFiles, ASecondExportFindsWhatIsToBeCut) {
     write_file(kept()[0], "what");
     EXPECT_EQ(exported({card()}, leaf(disk(16)), options, problems).cut_triangles,
               first.cut_triangles);
+}
+
+TEST(IncludeFiles, WhatIsKeptOfMasksChangesNothing) {
+    const std::filesystem::path kept = own_scratch() / "kept";
+    const std::filesystem::path file = kept / "masks.bin";
+    std::filesystem::remove_all(kept);
+    const Material material = leaf(disk(64));
+    const std::map<std::string, std::string> wanted = exported_with("", material);
+    EXPECT_TRUE(exported_with(kept, material) == wanted);
+    ASSERT_TRUE(std::filesystem::exists(file));
+    const std::string bytes = read_file(file);
+    EXPECT_TRUE(exported_with(kept, material) == wanted);
+    EXPECT_EQ(read_file(file), bytes);  // nothing was found anew
+    PcgRandom random(3);
+    for (int i = 0; i < 20; ++i) {
+        write_file(file, hostile::mutated(bytes, random));
+        EXPECT_TRUE(exported_with(kept, material) == wanted);
+    }
+}
+
+TEST(IncludeFiles, KeptNonsenseAboutMasksIsFoundAnewOrHarmsNobody) {
+    const std::filesystem::path kept = own_scratch() / "kept";
+    const std::filesystem::path file = kept / "masks.bin";
+    std::filesystem::remove_all(kept);
+    const Material material = leaf(disk(64));
+    const std::map<std::string, std::string> wanted = exported_with(kept, material);
+    const std::string bytes = read_file(file);
+    const auto change = [&](const std::function<std::string(std::string)>& other) {
+        FindingsFile findings(file, bytes.substr(0, 8));
+        // Behind the version, each finding is 16 bytes of head, of which the last four are its
+        // size.
+        size_t count = 0;
+        for (size_t place = 8; place + 24 <= bytes.size(); ++count) {
+            Hash key = 0;
+            uint32_t size = 0;
+            std::memcpy(&key, bytes.data() + place, sizeof key);
+            std::memcpy(&size, bytes.data() + place + 12, sizeof size);
+            findings.add(key, other(bytes.substr(place + 16, size)));
+            place += 16 + size;
+        }
+        EXPECT_GT(count, 4u);
+        findings.save();
+    };
+    change([](const std::string& one) { return one.substr(0, one.size() / 2); });
+    EXPECT_TRUE(exported_with(kept, material) == wanted);
+    change([](const std::string& one) { return one + one; });
+    EXPECT_TRUE(exported_with(kept, material) == wanted);
+    for (const char byte : {'\xff', '\0', '\x7f', '\x3f', '9'}) {
+        change([&](const std::string& one) { return std::string(one.size(), byte); });
+        EXPECT_NO_THROW(exported_with(kept, material));
+    }
+}
+
+TEST(IncludeFiles, BakedPicturesAreKeptWhole) {
+    const std::filesystem::path kept = own_scratch() / "kept";
+    std::filesystem::remove_all(kept);
+    const Material material = leaf(disk(64));
+    const std::map<std::string, std::string> wanted = exported_with(kept, material);
+    std::vector<std::filesystem::path> baked;
+    for (const auto& entry : std::filesystem::directory_iterator(kept / "baked"))
+        baked.push_back(entry.path());
+    ASSERT_FALSE(baked.empty());
+    for (const auto& path : baked)
+        std::filesystem::last_write_time(path, {});
+    EXPECT_TRUE(exported_with(kept, material) == wanted);
+    for (const auto& path : baked) {
+        EXPECT_NE(std::filesystem::last_write_time(path), std::filesystem::file_time_type{});
+        write_file(path, "no picture");
+    }
+    EXPECT_TRUE(exported_with(kept, material) == wanted);
+    for (const auto& path : baked)
+        EXPECT_NE(read_file(path), "no picture");
 }
 
 TEST(IncludeFiles, CutOutMasksTookAnyMemory) {
