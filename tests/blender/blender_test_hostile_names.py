@@ -170,7 +170,8 @@ class HostileNames(unittest.TestCase):
         kept = {path for path in made if path.startswith("lodestone/")}
         self.assertEqual(made - kept, {"picture.png"})
         files = {path.split("/")[-1] for path in kept}
-        self.assertEqual(files, {"sky_light.bin", "cost.json"})  # the sky's light beside no levels
+        # What was found for pictures, beside no levels.
+        self.assertEqual(files, {"sky_light.bin", "pictures.bin", "cost.json"})
 
     def test_levels_do_not_depend_on_names(self):
         (expected, codes, _), (pixels, found, made) = self.fields(40, 2.0)

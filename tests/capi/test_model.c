@@ -192,6 +192,11 @@ static void test_pictures_and_textures_are_checked(void) {
     picture.height = 1;
     EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_OK && index == 0);
     EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_OK && index == 0);
+    EXPECT(lds_pictures_keep(NULL) == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_pictures_keep("") == LDS_ERROR_INVALID_ARGUMENT);
+    EXPECT(lds_pictures_keep("/dev/null/nowhere") == LDS_OK); /* which is no error */
+    EXPECT(lds_model_add_picture(model, &picture, &index) == LDS_OK && index == 0);
+    EXPECT(lds_pictures_keep("/dev/null/nowhere") == LDS_OK);
     picture.pixels = NULL;
     picture.bytes = "no picture";
     picture.byte_count = 10;

@@ -366,6 +366,10 @@ LDS_API lds_status lds_model_write(lds_model* model, const char* path);
    first index. BAD_FILE, IO. */
 LDS_API lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
                                          uint32_t* out_index);
+/* Finds what a folder keeps about pictures that are added (their size and mean) and baked, for the
+   life of the process, and writes there what was found since the last call: it is called before
+   pictures are added and after. A folder that cannot be read or written to is no error. */
+LDS_API lds_status lds_pictures_keep(const char* folder);
 /* The mean of a texture's value over its whole picture, colors weighted by alpha. A single number
    is the first of out_color with a channel other than COLOR. */
 LDS_API lds_status lds_model_texture_mean(lds_model* model, const lds_texture* texture,

@@ -53,6 +53,7 @@ from .image import (
     image_read_part,
     image_size,
     image_write_png,
+    keep_pictures,
 )
 from .job import Job
 from .library import abi_version, library_path, rays_check, version
@@ -142,6 +143,7 @@ __all__ = [
     "image_read_part",
     "image_size",
     "image_write_png",
+    "keep_pictures",
     "kind_counts",
     "largest_face",
     "library_path",

@@ -29,6 +29,12 @@ def image_size(path: str) -> tuple[int, int]:
     return width.value, height.value
 
 
+def keep_pictures(folder: str) -> None:
+    """Finds what a folder keeps about pictures, and writes there what was found since the last
+    call: to be called before Model.add_picture() and bake_picture(), and after."""
+    check(library().lds_pictures_keep(text_in(folder)))
+
+
 def image_read(path: str, bottom_up: bool = False) -> Image:
     """A PNG, JPEG or EXR. bottom_up: the lowest row first (Blender's order)."""
     width, height = image_size(path)

@@ -4,6 +4,7 @@
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "image/bake/baked_image.h"
+#include "image/picture_findings.h"
 #include "image/texture_sampler.h"
 
 #include <algorithm>
@@ -227,6 +228,15 @@ lds_status lds_model_add_picture(lds_model* model, const lds_picture* picture,
         const lds_picture given = checked(picture, "picture");
         const std::string name = name_of(given.name);
         *out_index = index_of(*model, picture_of(given, name));
+    });
+}
+
+lds_status lds_pictures_keep(const char* folder) {
+    return guard([&] {
+        require(folder, "folder");
+        if (*folder == '\0')
+            fail(Status::InvalidArgument, "the folder has no name");
+        image::keep_pictures(folder);
     });
 }
 

@@ -3,13 +3,13 @@
 
 #include "base/color.h"
 #include "image/image_reduction.h"
+#include "image/picture_findings.h"
 
 #include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
-#include <unordered_map>
+#include <optional>
 
 namespace lodestone::image {
 namespace {
@@ -55,46 +55,27 @@ double pick(TextureChannel channel, const glm::dvec4& texel) {
     return luminance(glm::dvec3(texel));
 }
 
-/// The facts about a picture that only decoding tells.
-struct PictureFacts {
-    PictureFormat format = PictureFormat::Png;
-    int width = 0;
-    int height = 0;
-    glm::dvec4 mean{0.0};
-};
-
-PictureFacts facts_of(const PackedImage& image, const Picture& picture) {
-    PictureFacts facts;
-    facts.format = format_of(picture.bytes);
-    facts.width = image.width;
-    facts.height = image.height;
-    facts.mean = mean_of(TexelRows(image, picture.space));
-    return facts;
+PictureFacts facts_of(const PackedImage& image, ColorSpace space) {
+    return {image.width, image.height, mean_of(TexelRows(image, space))};
 }
 
 /// The picture of a file's bytes, of which the pixels are known, or none.
 PicturePtr picture_of(std::string bytes, const PackedImage* pixels, ColorSpace space,
                       const std::string& name) {
-    static std::mutex mutex;
-    static std::unordered_map<Hash, PictureFacts> known;
     auto picture = std::make_shared<Picture>();
     picture->name = name;
     picture->space = space;
     picture->hash = Hasher().text(bytes).value(space).result();
     picture->bytes = std::move(bytes);
-    std::unique_lock lock(mutex);
-    auto found = known.find(picture->hash);
-    if (found == known.end()) {
-        lock.unlock();
-        const PictureFacts facts =
-            pixels != nullptr ? facts_of(*pixels, *picture) : facts_of(*packed(*picture), *picture);
-        lock.lock();
-        found = known.emplace(picture->hash, facts).first;
+    picture->format = format_of(picture->bytes);
+    std::optional<PictureFacts> facts = known_facts(picture->hash);
+    if (!facts) {
+        facts = facts_of(pixels != nullptr ? *pixels : *packed(*picture), space);
+        add_facts(picture->hash, *facts);
     }
-    picture->format = found->second.format;
-    picture->width = found->second.width;
-    picture->height = found->second.height;
-    picture->mean = found->second.mean;
+    picture->width = facts->width;
+    picture->height = facts->height;
+    picture->mean = facts->mean;
     return picture;
 }
 

@@ -149,12 +149,14 @@ class FileRun:
         requests = tuple(_filled_up(scene, picture) for picture in requests)
         self.verb.check_requests(requests)
         builds = self.verb.builds_levels(requests)
+        store = store_path.store_folder(self.job.file, self.job.store)
         request = extract_engine.Request(
             cameras=[(picture.camera, picture.size) for picture in requests],
             tick=self._tick,
             still=self._still,
             with_poses=self._poses is None and builds,
             structured=builds,  # pictures of the originals ask for no groups
+            store=str(store),
         )
         wall, cpu = time.monotonic(), time.process_time()
         try:
@@ -174,7 +176,6 @@ class FileRun:
             if totals.occurrences == 0 and not picture_requirements.something(scene, self.problems):
                 raise Failed(ExitCode.FAILED, picture_requirements.NOTHING)
             self.clock.tail = f"{progress_text.count(totals.triangles_placed)} triangles"
-            store = store_path.store_folder(self.job.file, self.job.store)
             self.result["store"] = str(store)
             try:
                 built = {}

@@ -27,12 +27,19 @@ class Request:
 
     `cameras` are names of camera objects ("" for the scene's own) with the size of their picture
     (None for the scene's): their frames are in `frames` in the same order. `still`: what
-    sample() found. `structured`: as extract() takes it. `with_poses`: also the `poses`
+    sample() found. `structured`, `store`: as extract() takes them. `with_poses`: also the `poses`
     that levels follow; close them when done.
     """
 
     def __init__(
-        self, cameras=(), tick=None, compare=False, still=None, with_poses=False, structured=True
+        self,
+        cameras=(),
+        tick=None,
+        compare=False,
+        still=None,
+        with_poses=False,
+        structured=True,
+        store="",
     ):
         self.cameras = tuple(cameras)
         self.tick = tick or (lambda: None)
@@ -40,6 +47,7 @@ class Request:
         self.still = still
         self.with_poses = with_poses
         self.structured = structured
+        self.store = store
         self.poses = deforming_poses.Poses()
         self.without_camera = False  # the scene has none; it renders with a stand-in
         self.extraction = None
@@ -75,7 +83,7 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
             if request.with_poses:
                 request.poses = deforming_poses.read(depsgraph, self.frame_set, request.still, tick)
             extraction = scene_extraction.extract(
-                depsgraph, tick, request.still, request.structured
+                depsgraph, tick, request.still, request.structured, request.store
             )
             try:
                 for name, size in request.cameras:

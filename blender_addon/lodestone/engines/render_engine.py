@@ -187,7 +187,7 @@ class _Run:
         # Compare tells things by their paths, which groups are a part of
         structured = levels or self.plan is not None
         extraction = scene_extraction.extract(
-            self.depsgraph, self._tick, still, structured=structured
+            self.depsgraph, self._tick, still, structured=structured, store=str(self.store)
         )
         self.problems.extend(extraction.problems)
         self.users = extraction.users

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "image/bake/baked_image.h"
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "image/bake/bake_program.h"
+#include "image/picture_findings.h"
 #include "image/texture_sampler.h"
 
 #include <algorithm>
@@ -144,6 +146,20 @@ void bake_rows(const std::vector<BakeStep>& steps, const std::vector<Texture>& t
     });
 }
 
+/// The picture that is kept from an earlier bake; null where there is none of that size.
+PicturePtr kept_picture(Hash key, int width, int height, ColorSpace space,
+                        const std::string& name) {
+    std::optional<std::string> png = kept_bake(key);
+    if (!png)
+        return nullptr;
+    try {
+        PicturePtr made = make_picture(std::move(*png), space, name);
+        return made->width == width && made->height == height ? made : nullptr;
+    } catch (const Error&) {
+        return nullptr;  // it is no picture
+    }
+}
+
 }  // namespace
 
 Image bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures, int width,
@@ -168,6 +184,11 @@ PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Te
     const Hash key = hash_of_bake(steps, textures, width, height, space);
     PicturePtr made = remembered.find(key);
     if (made == nullptr) {
+        made = kept_picture(key, width, height, space, name);
+        if (made != nullptr)
+            remembered.add(key, made);
+    }
+    if (made == nullptr) {
         check_bake(steps, textures.size(), width, height);
         PackedImage image = blank_packed(width, height, 3, 8, name);
         bake_rows(steps, textures, width, height, job, [&](size_t row, const float* texels) {
@@ -178,9 +199,10 @@ PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Te
                         space == ColorSpace::Linear ? byte_of(texels[c]) : srgb_byte_of(texels[c]);
             }
         });
-        // In half of the time and a fifth larger: it is made anew whenever a scene is read.
+        // In half of the time and a fifth larger: it is often made anew when a scene is read.
         made = make_picture(image, PngEffort::Quick, space, name);
         remembered.add(key, made);
+        keep_bake(key, made->bytes);
     }
     if (made->name == name)
         return made;

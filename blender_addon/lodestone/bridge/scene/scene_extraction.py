@@ -66,12 +66,13 @@ def extract(
     tick: Callable[[], None] = lambda: None,
     still: dict[str, list[str]] | None = None,
     structured: bool = True,
+    store: str = "",
 ) -> Extraction:
     """Reads a scene into a model. `tick()` is called between meshes; what it raises stops the
     extraction. `still`: what sample() found out. `structured`: flat collections get groups
     below them, unless the designer wants none. A scene that shows nothing gives a model whose root
-    group is empty."""
-    with _without_garbage_collection():
+    group is empty. `store`: the folder that keeps what was found of pictures; "": none does."""
+    with _without_garbage_collection(), _kept_pictures(store):
         return _extract(depsgraph, tick, still, structured)
 
 
@@ -149,6 +150,16 @@ def _without_garbage_collection() -> Iterator[None]:
                 gc.freeze()
                 gc.unfreeze()
             gc.enable()
+
+
+@contextlib.contextmanager
+def _kept_pictures(store: str) -> Iterator[None]:
+    """Pictures that an earlier reading met are not decoded again."""
+    if store:
+        native.keep_pictures(store)
+    yield
+    if store:
+        native.keep_pictures(store)
 
 
 @dataclass
