@@ -41,7 +41,7 @@ public:
 
     /// The alpha of a texture. Throws Error(BadFile).
     MaskTexelsPtr texels(const Texture& texture);
-    /// What is seen of them. Throws Error(BadFile).
+    /// Counts the texels of it that are seen. Throws Error(BadFile).
     image::MaskCount count(const Texture& texture, const image::SeenTexels& seen);
 
     /// The outline of a mask, of whose alpha the area that is seen keeps the mean: the level is
@@ -59,7 +59,7 @@ public:
     /// their square.
     static constexpr size_t kMostCorners = 8192;
 
-    /// What else is found of masks and belongs into the same file.
+    /// The file's other findings about masks, which belong to who asks for them.
     FindingsFile& findings() { return findings_; }
 
 private:
@@ -92,7 +92,7 @@ private:
                               const Job& job);
     MaskOutlinePtr hull_at(const Texture& texture, int halvings, const Job& job);
 
-    /// What is kept of a key for one purpose, else what is made and kept now.
+    /// Gives the value kept of a key for one purpose, else the one that is made and kept now.
     template <typename Value>
     Value kept_or(std::string_view purpose, Hash key, const std::function<Value()>& make);
 
