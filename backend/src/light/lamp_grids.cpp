@@ -23,9 +23,12 @@ constexpr double kLong = 3;
 // The same, for lights as long as tubes.
 // Taste: 33 x 3 rays are about as many as 9 x 9.
 constexpr double kVeryLong = 12;
-// The rays of a finer grid that POV-Ray always casts.
+// The rays of a finer grid of a cone or an area that POV-Ray always casts.
 // Law: 3 x 3, as such grids are written (adaptive 1).
 constexpr double kAlways = 9;
+// The same of a point's grid.
+// Law: its corners, as such grids are written (adaptive 0).
+constexpr double kAlwaysOfPoint = 4;
 // The share of the others that it casts.
 // Taste: most points see all of a lamp or nothing of it.
 constexpr double kRefined = 0.25;
@@ -148,7 +151,8 @@ int shorter_edge(const Light& light, int rays) {
 
 double shadow_rays(const Light& light, const LampGrid& grid) {
     const double all = static_cast<double>(grid.rays) * shorter_edge(light, grid.rays);
-    return all <= kAlways ? all : kAlways + kRefined * (all - kAlways);
+    const double always = light.kind == LightKind::Point ? kAlwaysOfPoint : kAlways;
+    return all <= always ? all : always + kRefined * (all - always);
 }
 
 std::vector<std::vector<LampGrid>> fit_lamp_grids(const LightTree& tree, const LightCut& cut,

@@ -38,8 +38,8 @@ LampGrid finest_grid(const Light& light, int rays);
 /// The rays along the shorter edge for this number along the longer one.
 int shorter_edge(const Light& light, int rays);
 
-/// The shadow rays that a light costs at a point in the mean. POV-Ray begins with 3 x 3, and casts
-/// more where these disagree.
+/// The shadow rays that a light costs at a point in the mean. POV-Ray begins with 3 x 3, of
+/// points with 2 x 2, and casts more where these disagree.
 double shadow_rays(const Light& light, const LampGrid& grid);
 
 /// By region, in the order of its lights: the coarsest grids that show no step but at few points.

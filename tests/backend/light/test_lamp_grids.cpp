@@ -63,6 +63,9 @@ TEST(LampGrids, APointOrALampWithoutShadowHasOneRay) {
     light.shadow = false;
     EXPECT_EQ(finest_grid(light, 17).rays, 1);
     EXPECT_EQ(shadow_rays(light, {1, false}), 1);
+    EXPECT_EQ(shadow_rays(light, {2, false}), 4);
+    EXPECT_EQ(shadow_rays(light, {3, false}), 5.25);  // it begins at the corners
+    light.kind = LightKind::Area;
     EXPECT_EQ(shadow_rays(light, {3, false}), 9);
 }
 
