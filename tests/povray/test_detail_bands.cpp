@@ -4,7 +4,7 @@
 #include "povray/mask_cards.h"
 #include "povray_export/mesh/detail_bands.h"
 #include "povray_export/mesh/mesh_cutting.h"
-#include "povray_export/scene/pixel_field.h"
+#include "povray_export/mesh/pixel_field.h"
 
 #include <limits>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/scene/pixel_field.h"
+#include "povray_export/mesh/pixel_field.h"
 
 #include "choose/criterion.h"
 #include "geometry/closest_on_triangle.h"
