@@ -75,7 +75,7 @@ class Verbs(unittest.TestCase):
         totals = SimpleNamespace(objects=1, occurrences=2, triangles_placed=24, triangles_unique=12)
         model = SimpleNamespace(totals=lambda: totals)
         for verb in VERBS:
-            self.assertEqual(verb.about(model)["model"]["triangles_placed"], 24)
+            self.assertEqual(verb.about(model, None)["model"]["triangles_placed"], 24)
 
 
 class Pages(unittest.TestCase):

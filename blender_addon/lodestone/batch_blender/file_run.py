@@ -169,7 +169,7 @@ class FileRun:
             picture_requirements.grease_pencil(self.problems)
         with extraction.model as model:
             totals = model.totals()
-            for name, part in self.verb.about(model).items():
+            for name, part in self.verb.about(model, self.job).items():
                 self.result.setdefault(name, part)
             spent = {"cpu_s": time.process_time() - cpu, "wall_s": time.monotonic() - wall}
             self.result.setdefault("extract", spent)

@@ -100,8 +100,9 @@ class Verb:
         read with automatic groups."""
         return any(request.levels for request in requests)
 
-    def about(self, model: Any) -> dict[str, Any]:
-        """What it tells of a scene that was read, before anything is made: parts of the report."""
+    def about(self, model: Any, job: FileJob) -> dict[str, Any]:
+        """What it tells of a scene that was read for a job, before anything is made: parts of the
+        report."""
         return {"model": run_report.model_part(model.totals())}
 
     def make(self, work: PictureWork) -> dict[str, Any]:
