@@ -18,7 +18,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 3;
+constexpr uint32_t kBakeVersion = 4;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -73,7 +73,8 @@ private:
     /// A request for shares: of one surface alone, or of one thing as it is placed.
     struct WantedShares {
         const Representation* representation = nullptr;
-        const SkyThing* placed = nullptr;  // null: alone
+        const SkyThing* placed = nullptr;          // null: alone
+        const Representation* original = nullptr;  // the finest level; null: it is that
         std::shared_ptr<const light::SkyShares> found;
     };
     /// A request for the means of all placements of one finest level, or of one stand-in.
@@ -85,11 +86,12 @@ private:
         Hash key = 0;
     };
 
-    Hash key_of(const Representation& representation, const SkyThing* placed) const {
+    Hash key_of(const SkyThing& thing, bool once) const {
         Hasher hasher;
-        const RepresentationSummary& summary = representation.summary;
+        const RepresentationSummary& summary = thing.representation->summary;
+        const SkyThing* placed = once ? &thing : nullptr;
         hasher.value(kBakeVersion).value(options_.rays).value(rays_.of(summary.cost.triangles));
-        hasher.value(summary.hash);
+        hasher.value(summary.hash).value(all_.finest_of(thing).summary.hash);
         hasher.value(summary.cost.triangles);
         if (placed != nullptr) {
             hasher.value(all_.scene()).value(summary.max_error).value(all_.splits_of(*placed));
@@ -131,13 +133,15 @@ private:
     }
 
     WantedShares* want_shares(const SkyThing& thing, bool once) {
-        const Hash key = key_of(*thing.representation, once ? &thing : nullptr);
+        const Hash key = key_of(thing, once);
         const auto [at, fresh] = wanted_shares_.try_emplace(key);
         WantedShares& wanted = at->second;
         if (!fresh)
             return &wanted;
         wanted.representation = thing.representation;
         wanted.placed = once ? &thing : nullptr;
+        if (all_.finest_of(thing).summary.hash != thing.representation->summary.hash)
+            wanted.original = &all_.finest_of(thing);
         if (const auto bytes = bakes_.find(key)) {
             auto found =
                 light::SkyShares::of_bytes(*bytes, thing.representation->summary.cost.triangles);
@@ -210,8 +214,11 @@ private:
             occluders.push_back({&all_.finest_of(leaf), leaf.world});
             all.push_back(&all_.finest_of(leaf));
         }
-        for (const auto& [key, wanted] : missing_)
+        for (const auto& [key, wanted] : missing_) {
             all.push_back(wanted->representation);
+            if (wanted->original != nullptr)
+                all.push_back(wanted->original);
+        }
         for (const WantedMeans* wanted : missing_means_)
             all.push_back(wanted->representation);
         light::SkySurfaces surfaces(model_);
@@ -265,10 +272,12 @@ private:
             const int rays = rays_.of(wanted.representation->summary.cost.triangles);
             light::SkyRequest request{
                 surfaces.of(*wanted.representation), {}, nullptr, 0, rays, 0, options_.rays};
+            request.error = wanted.representation->summary.max_error;
+            if (wanted.original != nullptr)
+                request.original = &surfaces.of(*wanted.original);
             if (wanted.placed != nullptr) {
                 request.world = wanted.placed->world;
                 request.around = &scene;
-                request.error = wanted.representation->summary.max_error;
                 request.splits = all_.splits_of(*wanted.placed);
             }
             wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
@@ -334,7 +343,7 @@ private:
             auto light = std::make_shared<SkyLight>();
             light->shares = shares_of_[i]->found;
             light->factor = means != nullptr ? stepped(means->ratios[number]) : 1;
-            const Hash key = key_of(*shares_of_[i]->representation, shares_of_[i]->placed);
+            const Hash key = key_of(all_.things()[i], shares_of_[i]->placed != nullptr);
             light->hash = Hasher().value(key).value(light->factor).result();
             if (means == nullptr)
                 means_[i] = light->shares->mean;

@@ -61,6 +61,13 @@ bool ClosestSearch::find_shown(uint32_t index, geometry::OnTriangle& hidden) con
 
 bool ClosestSearch::visit(uint32_t index) {
     const Triangle& t = triangles[index];
+    if (facing != glm::dvec3(0.0)) {
+        const glm::dvec3 a(positions[t.x]);
+        const glm::dvec3 area =
+            glm::cross(glm::dvec3(positions[t.y]) - a, glm::dvec3(positions[t.z]) - a);
+        if (!(glm::dot(area, facing) > 0))
+            return false;
+    }
     geometry::OnTriangle next = geometry::closest_on_triangle(
         point, glm::dvec3(positions[t.x]), glm::dvec3(positions[t.y]), glm::dvec3(positions[t.z]));
     const auto wins = [&](double next_square) {

@@ -18,9 +18,14 @@ struct ClosestSearch {
     glm::dvec3 point;
     /// Whether there is anything at a point of a triangle; null: there is something everywhere.
     const std::function<bool(uint32_t triangle, double u, double v)>* shows = nullptr;
+    /// Only triangles whose fronts face this way count; zero: all do.
+    glm::dvec3 facing{0.0};
     double square = std::numeric_limits<double>::infinity();  // of the distance so far
     uint32_t triangle = kNoTriangle;
     geometry::OnTriangle where{};
+
+    /// Whether some triangles, or some of their points, do not count.
+    bool choosy() const { return shows != nullptr || facing != glm::dvec3(0.0); }
 
     /// Takes the triangle if it is nearer than all before, or as near and lower; returns whether it
     /// was.

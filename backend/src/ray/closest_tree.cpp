@@ -425,7 +425,7 @@ void ClosestTree::search(ClosestSearch& search, double radius, double enough) co
                     decide();
                 candidates[waiting++] = {distances[i], leaf.slack[i],
                                          leaf.triangles[static_cast<size_t>(i)]};
-                if (search.shows != nullptr) {  // its nearest point may be hidden
+                if (search.choosy()) {  // its nearest point may not count
                     decide();
                     continue;
                 }

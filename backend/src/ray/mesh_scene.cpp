@@ -213,17 +213,30 @@ size_t MeshScene::list_crossed(const glm::dvec3& origin, const glm::dvec3& direc
 
 ClosestPoint MeshScene::closest_point(const glm::dvec3& point, double radius, uint32_t perhaps,
                                       double enough) const {
-    Data& data = *data_;
-    ClosestPoint out;
-    if (data.positions.empty() || !(radius >= 0) || !std::isfinite(point.x + point.y + point.z))
-        return out;
+    const Data& data = *data_;
     std::function<bool(uint32_t, double, double)> shown;
     if (data.cover)
         shown = [&](uint32_t triangle, double u, double v) {
             return data.cover->shows(triangle, u, v);
         };
-    ClosestSearch search{data.positions, data.triangles, (point - data.center) * data.scale,
-                         data.cover ? &shown : nullptr};
+    ClosestSearch search{data.positions, data.triangles, {}, data.cover ? &shown : nullptr};
+    return closest(point, search, radius, perhaps, enough);
+}
+
+ClosestPoint MeshScene::closest_facing(const glm::dvec3& point, const glm::dvec3& direction,
+                                       double radius, uint32_t perhaps) const {
+    ClosestSearch search{data_->positions, data_->triangles, {}};
+    search.facing = direction;
+    return closest(point, search, radius, perhaps, 0);
+}
+
+ClosestPoint MeshScene::closest(const glm::dvec3& point, ClosestSearch& search, double radius,
+                                uint32_t perhaps, double enough) const {
+    Data& data = *data_;
+    ClosestPoint out;
+    if (data.positions.empty() || !(radius >= 0) || !std::isfinite(point.x + point.y + point.z))
+        return out;
+    search.point = (point - data.center) * data.scale;
     const double far =
         std::max({std::abs(search.point.x), std::abs(search.point.y), std::abs(search.point.z)});
     if (perhaps < data.triangles.size())

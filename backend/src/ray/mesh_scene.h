@@ -57,6 +57,8 @@ struct ClosestPoint {
 /// The questions that a scene is asked.
 enum class SceneUse : uint8_t { Everything, ClosestPoints };
 
+struct ClosestSearch;
+
 /// A mesh made ready for rays. It keeps its own copy, moved to its bound's center and scaled by a
 /// power of two, so that Embree's single precision is spent on the mesh and not on where it is.
 /// Const methods may be called from any thread. Every method throws Error(RaysUnavailable) where
@@ -119,8 +121,15 @@ public:
                                double radius = std::numeric_limits<double>::infinity(),
                                uint32_t perhaps = kNoTriangle, double enough = 0) const;
 
+    /// The nearest point within `radius` of the triangles whose fronts face a direction, whatever is
+    /// shown there.
+    ClosestPoint closest_facing(const glm::dvec3& point, const glm::dvec3& direction, double radius,
+                                uint32_t perhaps = kNoTriangle) const;
+
 private:
     struct Data;
+    ClosestPoint closest(const glm::dvec3& point, ClosestSearch& search, double radius,
+                         uint32_t perhaps, double enough) const;
     std::unique_ptr<Data> data_;
 };
 

@@ -219,3 +219,35 @@ TEST(Ray, CrossedTrianglesAreListed) {
     EXPECT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, -1}, 9, list), 0u);
     EXPECT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 9, {}), 0u);
 }
+
+// The front of a thin board is the place of what faces as it does, though its back is nearer.
+TEST(ClosestTree, OfWhatFacesOneWayTheNearestIsFound) {
+    std::string reason;
+    if (!ray::available(&reason))
+        GTEST_SKIP() << reason;
+    const ray::MeshScene board(shapes::box({0, 0, 0}, {1, 1, 0.01}));
+    const glm::dvec3 below(0.5, 0.5, -1);
+    EXPECT_NEAR(board.closest_facing(below, {0, 0, 1}, kInfinity).distance, 1.01, 1e-6);
+    EXPECT_NEAR(board.closest_facing(below, {0, 0, -1}, kInfinity).distance, 1, 1e-6);
+    EXPECT_EQ(board.closest_facing(below, {0, 0, 1}, 1.005).triangle, ray::kNoTriangle);
+    const Mesh ball = shapes::sphere(1, 4);
+    const ray::MeshScene scene(ball);
+    PcgRandom random(3);
+    for (int i = 0; i < 200; ++i) {
+        const glm::dvec3 point = point_in(random, 2);
+        const glm::dvec3 facing = point_in(random, 1);
+        const ray::ClosestPoint found = scene.closest_facing(point, facing, kInfinity);
+        double right = kInfinity;
+        for (size_t k = 0; k < ball.triangles.size(); ++k) {
+            const Triangle& t = ball.triangles[k];
+            const geometry::OnTriangle there = geometry::closest_on_triangle(
+                point, glm::dvec3(ball.positions[t.x]), glm::dvec3(ball.positions[t.y]),
+                glm::dvec3(ball.positions[t.z]));
+            if (glm::dot(area_vector(ball, k), facing) > 0)
+                right = std::min(right, glm::length(there.point - point));
+        }
+        ASSERT_NEAR(found.distance, right, 1e-6);
+        const uint32_t perhaps = static_cast<uint32_t>(i);
+        ASSERT_EQ(scene.closest_facing(point, facing, kInfinity, perhaps).triangle, found.triangle);
+    }
+}

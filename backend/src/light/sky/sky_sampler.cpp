@@ -28,6 +28,12 @@ constexpr double kAboveMesh = 4e-6;  // Law: as kAboveTriangle
 // And in parts of how far the thing is from where the coordinates of all that hides the sky begin.
 // Law: eight times the rounding of single precision; a ray and what it meets are rounded once each.
 constexpr double kAboveRounding = 4.8e-7;
+// How far the original is looked for that faces as a level does, in parts of the level's error.
+// Law: the level is nowhere farther from it, and twice is a margin.
+constexpr double kReach = 2;
+// How far a place on the original moves from an edge, in parts of the way to its triangle's middle.
+// Taste: a larger value blurs what lies along edges.
+constexpr double kInward = 0.01;
 
 /// The map of normals: the transposed inverse, but for its length, where there is one. Under a
 /// placement that flattens all it is that of the flat side.
@@ -52,7 +58,7 @@ SkySampler::SkySampler(const SkyRequest& request)
     above_ = kAboveMesh * size_;
     if (request.around != nullptr) {
         enlarged_ = stretch(request.world);
-        above_ += request.error;
+        above_ += request.original == nullptr ? request.error : 0;
         Bound bound;
         bound.box = box;
         const Box3 placed = transformed(bound, request.world).box;
@@ -92,7 +98,7 @@ bool SkySampler::hidden(const SkyRay& ray, uint32_t& blocker) const {
 }
 
 bool SkySampler::hidden_alone(const SkyRay& ray) const {
-    return !flat_ && request_.surface.scene->occluded(ray.from, to_own_.linear * ray.direction);
+    return !flat_ && self().scene->occluded(ray.from, to_own_.linear * ray.direction);
 }
 
 TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) const {
@@ -102,15 +108,16 @@ TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) c
         return out;
     const bool both = !request_.surface.opaque_slot(mesh.slot(triangle));
     const uint32_t first = static_cast<uint32_t>(triangle % kParts) * static_cast<uint32_t>(rays);
-    const double reach = placed->longest * enlarged_;
     uint32_t blocker = ray::PlacedScenes::kNothing;
+    uint32_t near = ray::kNoTriangle;
     // Rays are cast in pairs: from one point to both sides of the normal, or from both sides of
     // the triangle. Where one of the first kind begins inside of something, so does the other.
     for (int i = 0; i < rays; i += 2) {
         const uint32_t number = first + static_cast<uint32_t>(i / 2);
-        const SkyRay pair[] = {ray(mesh, triangle, *placed, number, false),
-                               both ? ray(mesh, triangle, *placed, number, true)
-                                    : ray(mesh, triangle, *placed, number, false, true)};
+        const SkyPlace place = this->place(mesh, triangle, *placed, number, near);
+        const double reach = place.longest * enlarged_;
+        const SkyRay pair[] = {ray(place, false),
+                               both ? ray(place, true) : ray(place, false, true)};
         double seen = 0;
         bool inside = false;
         for (const SkyRay& one : pair) {
@@ -132,40 +139,86 @@ TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) c
     return out;
 }
 
-SkySampler::SkyRay SkySampler::ray(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed,
-                                   uint32_t number, bool back, bool opposite) const {
-    const std::array<double, 4> point = points_.point(number);
-    const glm::dvec2 weights = measure::uniform_in_triangle(point[0], point[1]);
-    SkyRay out;
-    out.weights = {1 - weights.x - weights.y, weights.x, weights.y};
-    glm::dvec3 at(0.0);
+void SkySampler::face_of(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed,
+                         const glm::dmat3& normal_map, const std::array<double, 3>& weights,
+                         SkyPlace& out) {
+    out.at = glm::dvec3(0.0);
     glm::dvec3 smooth(0.0);
     const Triangle& t = mesh.triangles[triangle];
     for (size_t i = 0; i < 3; ++i) {
-        at += out.weights[i] * placed.at[i];
+        out.at += weights[i] * placed.at[i];
         if (!mesh.normals.empty())
-            smooth += out.weights[i] * glm::dvec3(mesh.normals[t[static_cast<int>(i)]]);
+            smooth += weights[i] * glm::dvec3(mesh.normals[t[static_cast<int>(i)]]);
     }
-    glm::dvec3 normal = normal_map_ * smooth;
+    out.face = placed.face;
+    out.up = placed.up;
+    out.longest = placed.longest;
+    const glm::dvec3 normal = normal_map * smooth;
     const double length = glm::length(normal);
-    normal = length > 0 && std::isfinite(length) && glm::dot(normal, placed.up) > 0
-                 ? normal / length
-                 : placed.up;
+    out.normal = length > 0 && std::isfinite(length) && glm::dot(normal, placed.up) > 0
+                     ? normal / length
+                     : placed.up;
+}
+
+SkySampler::SkyPlace SkySampler::place(const Mesh& mesh, size_t triangle,
+                                       const PlacedTriangle& placed, uint32_t number,
+                                       uint32_t& near) const {
+    SkyPlace out;
+    out.point = points_.point(number);
+    const glm::dvec2 weights = measure::uniform_in_triangle(out.point[0], out.point[1]);
+    out.weights = {1 - weights.x - weights.y, weights.x, weights.y};
+    face_of(mesh, triangle, placed, normal_map_, out.weights, out);
+    if (request_.original != nullptr)
+        move_to_original(!request_.surface.opaque_slot(mesh.slot(triangle)), out, near);
+    return out;
+}
+
+void SkySampler::move_to_original(bool both, SkyPlace& place, uint32_t& near) const {
+    const SkySurface& original = *request_.original;
+    // A face that points the same way comes first: the front of a thin board is not its back.
+    ray::ClosestPoint found;
+    if (!both)
+        found = original.scene->closest_facing(place.at, place.face, kReach * request_.error, near);
+    if (found.triangle == ray::kNoTriangle)
+        found = original.scene->closest_facing(place.at, glm::dvec3(0.0), kInfinity, near);
+    if (found.triangle == ray::kNoTriangle)
+        return;
+    near = found.triangle;
+    const std::optional<PlacedTriangle> there = placed(*original.mesh, found.triangle);
+    if (!there)
+        return;
+    // Many nearest places lie on edges, where a ray may begin in the next face.
+    const double inward = kInward / 3;
+    const double u = (1 - kInward) * found.u + inward;
+    const double v = (1 - kInward) * found.v + inward;
+    const bool flipped = glm::dot(there->face, place.face) < 0;
+    face_of(*original.mesh, found.triangle, *there, normal_map_, {1 - u - v, u, v}, place);
+    if (flipped) {
+        place.face = -place.face;
+        place.up = -place.up;
+        place.normal = -place.normal;
+    }
+}
+
+SkySampler::SkyRay SkySampler::ray(const SkyPlace& place, bool back, bool opposite) const {
     const double side = back ? -1 : 1;
-    normal *= side;
-    out.direction =
-        measure::cosine_direction(normal, point[3], opposite ? point[2] + 0.5 : point[2]);
-    out.from = at + side * (above_ + kAboveTriangle * placed.longest) * placed.face;
-    out.from_world = request_.world(out.from) + side * above_world_ * placed.up;
-    out.open = side * glm::dot(out.direction, placed.up) > 0;
+    SkyRay out;
+    out.weights = place.weights;
+    out.direction = measure::cosine_direction(side * place.normal, place.point[3],
+                                              opposite ? place.point[2] + 0.5 : place.point[2]);
+    out.from = place.at + side * (above_ + kAboveTriangle * place.longest) * place.face;
+    out.from_world = request_.world(out.from) + side * above_world_ * place.up;
+    out.open = side * glm::dot(out.direction, place.up) > 0;
     return out;
 }
 
 bool SkySampler::lies_inside(const Mesh& mesh, size_t triangle,
                              const PlacedTriangle& placed) const {
     int backs = 0;
+    uint32_t near = ray::kNoTriangle;
     for (int i = 0; i < kDarkRays; ++i) {
-        const SkyRay ray = this->ray(mesh, triangle, placed, static_cast<uint32_t>(i), false);
+        const SkyRay ray =
+            this->ray(place(mesh, triangle, placed, static_cast<uint32_t>(i), near), false);
         backs += meets_near_back(ray, size_ * enlarged_) ? 1 : 0;
     }
     return 2 * backs >= kDarkRays;
@@ -176,8 +229,10 @@ void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangl
     std::array<double, 3> seen{};
     std::array<double, 3> weights{};
     uint32_t blocker = ray::PlacedScenes::kNothing;
+    uint32_t near = ray::kNoTriangle;
     for (int i = 0; i < rays; ++i) {
-        const SkyRay ray = this->ray(mesh, triangle, placed, static_cast<uint32_t>(i), true);
+        const SkyRay ray =
+            this->ray(place(mesh, triangle, placed, static_cast<uint32_t>(i), near), true);
         const bool free = ray.open && ray.direction.z > 0 && !hidden(ray, blocker);
         for (size_t corner = 0; corner < 3; ++corner) {
             weights[corner] += ray.weights[corner];
@@ -194,7 +249,7 @@ bool SkySampler::meets_near_back(const SkyRay& ray, double reach) const {
     const SkyScene::SkyBlock block =
         request_.around != nullptr
             ? request_.around->first_block(ray.from_world, ray.direction, reach)
-            : first_block(request_.surface, ray.from, to_own_.linear * ray.direction, reach);
+            : first_block(self(), ray.from, to_own_.linear * ray.direction, reach);
     return block.back && block.t <= reach;
 }
 

@@ -17,10 +17,16 @@ struct SkyRequest {
     /// All that hides the sky, the finest level of this surface too; null: the surface alone hides
     /// the sky from itself.
     const SkyScene* around = nullptr;
-    double error = 0;   // metres, own frame: how far the surface may lie from its finest level
+    /// Metres, own frame: how far the surface may lie from its finest level, or from what it stands
+    /// in for.
+    double error = 0;
     int rays = 128;     // about so many tell the share of a corner
     size_t splits = 0;  // about how many triangles splits may add
     int most_rays = 0;  // as `rays`, where triangles are larger than the mean; fewer: none more
+    /// The finest level of the surface, in its frame: rays begin at the places of it that are
+    /// nearest, for a level lies behind some of its boards and before others. Null: it is the finest
+    /// one, or there is none.
+    const SkySurface* original = nullptr;
 };
 
 /// The answers of the rays of one triangle.
@@ -58,6 +64,21 @@ public:
 
     TriangleShares shares(const Mesh& mesh, size_t triangle, int rays) const;
 
+    /// A place where rays begin.
+    struct SkyPlace {
+        std::array<double, 4> point;    // of the sequence
+        std::array<double, 3> weights;  // how near to the corners it is
+        glm::dvec3 at;                  // own frame
+        glm::dvec3 face;                // unit, own frame
+        glm::dvec3 up;                  // unit, world
+        glm::dvec3 normal;              // unit, world, smooth
+        double longest = 0;             // edge of its triangle, own frame
+    };
+    /// A place on a triangle, or on the original there. `near`: a triangle of the original that may
+    /// be near, which makes it faster; it becomes the one that was found.
+    SkyPlace place(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, uint32_t number,
+                   uint32_t& near) const;
+
     /// One ray: from where, whereto, and how near to the corners it begins.
     struct SkyRay {
         glm::dvec3 from;        // own frame
@@ -66,8 +87,7 @@ public:
         std::array<double, 3> weights;
         bool open = false;  // false: it points into the surface
     };
-    SkyRay ray(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, uint32_t number,
-               bool back, bool opposite = false) const;
+    SkyRay ray(const SkyPlace& place, bool back, bool opposite = false) const;
 
     /// Whether the sky is hidden on a ray: by anything, or by the surface itself.
     bool hidden(const SkyRay& ray, uint32_t& blocker) const;
@@ -77,6 +97,13 @@ public:
     bool lies_inside(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed) const;
 
 private:
+    /// The face and the smooth normal of a place on a triangle.
+    static void face_of(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed,
+                        const glm::dmat3& normal_map, const std::array<double, 3>& weights,
+                        SkyPlace& out);
+    /// Moves a place to the original.
+    void move_to_original(bool both, SkyPlace& place, uint32_t& near) const;
+
     /// Makes the share of a dark triangle the mean of its sides: it may be the wall of a cave, or
     /// face the wrong way, and be seen from its back. Only the sky above counts there, for under a
     /// ground nobody looks.
@@ -86,6 +113,11 @@ private:
     /// Whether a ray ends at the back of something opaque within `reach` (world): the back of a
     /// roof is farther than that of what a thing stands in.
     bool meets_near_back(const SkyRay& ray, double reach) const;
+
+    /// The surface that hides the sky from the requested one itself.
+    const SkySurface& self() const {
+        return request_.original != nullptr ? *request_.original : request_.surface;
+    }
 
     const SkyRequest& request_;
     glm::dmat3 normal_map_;

@@ -56,7 +56,8 @@ public:
 
     SkyShares run() {
         const bool is_closed = closed(split_.mesh());
-        sampler_.note_closed(is_closed);
+        sampler_.note_closed(request_.original != nullptr ? closed(*request_.original->mesh)
+                                                          : is_closed);
         const bool may_split =
             request_.splits > 0 && (split_.mesh().triangles.size() > kFew || !is_closed);
         const double longest = sampler_.size() / kPartsOfMesh;
@@ -347,10 +348,11 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     MeanSums all;
     MeanSums inside;
     uint32_t blocker = ray::PlacedScenes::kNothing;
+    uint32_t near = ray::kNoTriangle;
     for (int i = 0; i < rays; ++i) {
-        const double place = sum * (i + 0.5) / rays;
-        const size_t triangle = static_cast<size_t>(
-            std::lower_bound(areas.begin(), areas.end(), place) - areas.begin());
+        const double area = sum * (i + 0.5) / rays;
+        const size_t triangle =
+            static_cast<size_t>(std::lower_bound(areas.begin(), areas.end(), area) - areas.begin());
         if (triangle >= areas.size())
             continue;
         const std::optional<SkySampler::PlacedTriangle> placed = sampler.placed(mesh, triangle);
@@ -362,8 +364,9 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         const double weight = own > 0 ? placed->area / own : 0;
         // Every second point of the sequence lies in one half of its first axis: both sides have
         // all points.
-        const SkySampler::SkyRay ray = sampler.ray(
-            mesh, triangle, *placed, static_cast<uint32_t>(both ? i / 2 : i), both && i % 2 == 1);
+        const SkySampler::SkyPlace place =
+            sampler.place(mesh, triangle, *placed, static_cast<uint32_t>(both ? i / 2 : i), near);
+        const SkySampler::SkyRay ray = sampler.ray(place, both && i % 2 == 1);
         const double alone = ray.open && !sampler.hidden_alone(ray) ? 1 : 0;
         const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
         all.placed += weight * seen;

@@ -12,7 +12,8 @@ namespace lodestone::light {
 /// place that face the same way share one number. An opaque triangle's share is that of its front,
 /// with half of its back's where that is dark and the mesh is open; one with masks or clear
 /// materials (leaves) has the mean of both sides. Triangles that lie inside
-/// of something opaque tell nothing to corners that others share. The result does not depend on the
+/// of something opaque tell nothing to corners that others share. A level has the light of its
+/// original: rays begin at the nearest places of that, facing alike. The result does not depend on the
 /// number of threads. cost: `rays` rays a vertex, and a quarter more for splits
 SkyShares sky_shares(const SkyRequest& request, const Job& job);
 

@@ -94,17 +94,19 @@ TEST_F(SkySampling, RaysBeginOnTheirTriangleAndLeaveIt) {
         ASSERT_TRUE(placed);
         EXPECT_NEAR(placed->area, 2, 1e-9);  // twice
         glm::dvec3 sum(0.0);
+        uint32_t near = ray::kNoTriangle;
         for (uint32_t i = 0; i < 256; ++i) {
-            const SkySampler::SkyRay ray = sampler.ray(mesh, 0, *placed, i, false);
+            const SkySampler::SkyPlace place = sampler.place(mesh, 0, *placed, i, near);
+            const SkySampler::SkyRay ray = sampler.ray(place, false);
             EXPECT_TRUE(ray.open);
             EXPECT_NEAR(ray.weights[0] + ray.weights[1] + ray.weights[2], 1, 1e-12);
             EXPECT_GT(ray.from.z, 0);
             EXPECT_LT(ray.from.z, 1e-3);
             EXPECT_GE(ray.from.x, ray.from.y);
-            const SkySampler::SkyRay back = sampler.ray(mesh, 0, *placed, i, true);
+            const SkySampler::SkyRay back = sampler.ray(place, true);
             EXPECT_LT(back.from.z, 0);
             EXPECT_LT(back.direction.z, 0);
-            const SkySampler::SkyRay opposite = sampler.ray(mesh, 0, *placed, i, false, true);
+            const SkySampler::SkyRay opposite = sampler.ray(place, false, true);
             EXPECT_NEAR(opposite.direction.x, -ray.direction.x, 1e-9);
             EXPECT_NEAR(opposite.direction.z, ray.direction.z, 1e-9);
             sum += ray.direction;

@@ -205,6 +205,49 @@ TEST_F(SkyVisibility, RoundingFarAwayHidesNothing) {
     }
 }
 
+// Strips of a level that lay behind the boards of a house were black.
+TEST_F(SkyVisibility, OfALevelBehindItsOriginalIsThatOfTheOriginal) {
+    // A thin board above a ground, and levels below and above it.
+    const ObjectIndex board = builder.mesh(shapes::box({0, 0, 1}, {1, 1, 1.02}));
+    const ObjectIndex ground = builder.mesh(shapes::quad(60, 60));
+    const Affine beside = moved({-30, -30, 0.99});
+    SkySurfaces surfaces(builder.model);
+    const std::vector<SkyOccluder> occluders{{&finest(board), {}}, {&finest(ground), beside}};
+    for (const double height : {0.95, 1.07}) {
+        Mesh sheet = shapes::quad(1, 1);
+        for (glm::vec3& position : sheet.positions)
+            position.z = static_cast<float>(height);
+        const Mesh under = turned_inside_out(sheet);
+        const ObjectIndex top = builder.mesh(sheet);
+        const ObjectIndex bottom = builder.mesh(under);
+        const std::vector<const Representation*> all{&finest(board), &finest(ground), &finest(top),
+                                                     &finest(bottom)};
+        surfaces.add(all, {});
+        const SkyScene scene(builder.model, surfaces, occluders, {});
+        const auto mean = [&](ObjectIndex level, bool known) {
+            SkyRequest request{surfaces.of(finest(level)), {}, &scene, 0.1, 64, 0};
+            request.original = known ? &surfaces.of(finest(board)) : nullptr;
+            return sky_shares(request, {}).mean;
+        };
+        // What faces up has the light of the top, which is all, and not of the dark side, which is
+        // nearer; what faces down has that one.
+        EXPECT_GT(mean(top, true), 0.98) << height;
+        EXPECT_LT(mean(bottom, true), 0.05) << height;
+    }
+}
+
+// A copy has the light of its own shape alone.
+TEST_F(SkyVisibility, OfALevelAloneIsThatOfItsOriginalAlone) {
+    const ObjectIndex original = builder.mesh(shapes::sphere(1, 3));
+    const ObjectIndex inner = builder.mesh(shapes::sphere(0.8, 1));
+    SkySurfaces surfaces(builder.model);
+    const std::vector<const Representation*> all{&finest(original), &finest(inner)};
+    surfaces.add(all, {});
+    SkyRequest request{surfaces.of(finest(inner)), {}, nullptr, 0.3, 64, 0};
+    request.original = &surfaces.of(finest(original));
+    EXPECT_GT(sky_shares(request, {}).mean, 0.98);
+}
+
 TEST_F(SkyVisibility, IsTheSameOnAnyNumberOfThreads) {
     const ObjectIndex ground = builder.mesh(shapes::terrain(24));
     const ObjectIndex box = builder.mesh(shapes::box({.4, .4, -1}, {.6, .6, 1}));
