@@ -3,6 +3,7 @@
 
 #include "base/findings_file.h"
 #include "base/parallel.h"
+#include "light/sky/joined_surface.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_things.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 4;
+constexpr uint32_t kBakeVersion = 7;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -264,25 +265,57 @@ private:
         return work;
     }
 
+    static bool stands_in(const WantedShares& wanted) {
+        return wanted.placed != nullptr && wanted.placed->group;
+    }
+
     void bake_shares(const light::SkySurfaces& surfaces, const light::SkyScene& scene,
                      BakeProgress& progress) {
         parallel_for(missing_.size(), [&](size_t i) {
-            job_.check();
             WantedShares& wanted = *missing_[i].second;
-            const int rays = rays_.of(wanted.representation->summary.cost.triangles);
-            light::SkyRequest request{
-                surfaces.of(*wanted.representation), {}, nullptr, 0, rays, 0, options_.rays};
-            request.error = wanted.representation->summary.max_error;
-            if (wanted.original != nullptr)
-                request.original = &surfaces.of(*wanted.original);
-            if (wanted.placed != nullptr) {
-                request.world = wanted.placed->world;
-                request.around = &scene;
-                request.splits = all_.splits_of(*wanted.placed);
-            }
-            wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
+            if (stands_in(wanted))
+                return;
+            const bool is_finest = wanted.original == nullptr;
+            bake_one(wanted, is_finest ? nullptr : &surfaces.of(*wanted.original), surfaces, scene);
             progress.add(work_of(wanted));
         });
+        // One after the other, for what they stand for is joined and takes memory.
+        for (const auto& [key, wanted] : missing_) {
+            if (!stands_in(*wanted))
+                continue;
+            job_.check();
+            const std::optional<light::SkySurface> joined = light::joined_surface(
+                surfaces, occluders_below(*wanted->placed), wanted->placed->world);
+            bake_one(*wanted, joined ? &*joined : nullptr, surfaces, scene);
+            progress.add(work_of(*wanted));
+        }
+    }
+
+    void bake_one(WantedShares& wanted, const light::SkySurface* original,
+                  const light::SkySurfaces& surfaces, const light::SkyScene& scene) const {
+        job_.check();
+        const int rays = rays_.of(wanted.representation->summary.cost.triangles);
+        light::SkyRequest request{
+            surfaces.of(*wanted.representation), {}, nullptr, 0, rays, 0, options_.rays};
+        request.error = wanted.representation->summary.max_error;
+        request.original = original;
+        if (wanted.placed != nullptr) {
+            request.world = wanted.placed->world;
+            request.around = &scene;
+            request.splits = all_.splits_of(*wanted.placed);
+        }
+        wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
+    }
+
+    /// All that rests below a thing.
+    std::vector<light::SkyOccluder> occluders_below(const SkyThing& thing) const {
+        std::vector<light::SkyOccluder> out;
+        for (uint32_t i = thing.first; i < thing.end; ++i) {
+            const SkyLeaf& leaf = all_.leaves()[i];
+            if (leaf.hides)
+                out.push_back({&all_.finest_of(leaf), leaf.world});
+        }
+        return out;
     }
 
     void bake_means(const light::SkySurfaces& surfaces, const light::SkyScene& scene,

@@ -99,6 +99,7 @@ std::string SkyThings::collect(uint64_t most_triangles) {
         thing.first = static_cast<uint32_t>(leaves_.size());
         if (!walk(node.object, cut_.world(node), node.hidden, thing.moves))
             return "more than " + grouped(kMostLeaves) + " things";
+        thing.end = static_cast<uint32_t>(leaves_.size());
         if (thing.group)
             ++stand_ins_[thing.representation->summary.hash];
         things_.push_back(thing);

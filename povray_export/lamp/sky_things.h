@@ -23,6 +23,7 @@ struct SkyThing {
     const Representation* representation = nullptr;
     Affine world;
     uint32_t first = 0;  // of the leaves that are it or below it
+    uint32_t end = 0;    // of them
     bool seen = false;   // false: it is drawn as nothing
     bool moves = false;
     bool group = false;  // stands in for a group

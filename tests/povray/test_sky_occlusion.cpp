@@ -2,6 +2,7 @@
 // Guards the shade of the sky in POV-Ray's scenes: it is as dark as it must be, makes no ray go on
 // more than once, and is found once.
 #include "base/findings_file.h"
+#include "base/parallel.h"
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_occlusion.h"
@@ -48,6 +49,40 @@ protected:
              at = scene.find(begin, at + 1)) {
             const size_t name = at + begin.size();
             out += read_file(path / scene.substr(name, scene.find('"', name) - name));
+        }
+        return out;
+    }
+
+    /// Places a group of a box of one metre, which is drawn as another mesh.
+    void place_group(const Mesh& stand_in, double x) {
+        const ObjectIndex box = builder.mesh(shapes::box({0, 0, 0}, {1, 1, 1}));
+        const ObjectIndex drawn = builder.mesh(stand_in);
+        Object group;
+        group.uid = group.name = "group" + std::to_string(x);
+        Representation places;
+        places.summary.kind = Kind::Assembly;
+        Assembly assembly;
+        assembly.placements = {{box, {}, "box", 0}};
+        places.payload = std::make_shared<const Assembly>(assembly);
+        group.representations = {places, builder.model.objects[drawn].representations[0]};
+        group.representations[1].summary.error = 1e-9;
+        group.representations[1].summary.max_error = 0.02;
+        builder.model.objects.push_back(group);
+        builder.place(static_cast<ObjectIndex>(builder.model.objects.size() - 1),
+                      {glm::dmat3(1.0), {x, 0, 0}});
+    }
+
+    /// The sky's shares on the groups that are placed.
+    std::vector<light::SkyShares> shares_of_stand_ins() {
+        const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+        Problems problems;
+        const SkyOcclusion light(builder.model, cut, {}, problems, {});
+        EXPECT_TRUE(problems.empty());
+        std::vector<light::SkyShares> out;
+        for (size_t i = 0; i < cut.chosen.size(); ++i) {
+            const choose::CutNode& node = cut.nodes[cut.chosen[i]];
+            if (builder.model.objects[node.object].group() && light.of(i))
+                out.push_back(*light.of(i)->shares);
         }
         return out;
     }
@@ -315,6 +350,42 @@ TEST_F(SkyOcclusionScenes, AModelOfEmptyGroupsHasAnEnd) {
     const SkyOcclusion light(model, cut, {}, problems, {});
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].code, "sky_not_occluded");
+}
+
+// A house that is drawn as its group's stand-in had black strips.
+TEST_F(SkyOcclusionScenes, StandInsBehindWhatTheyStandForAreAsLightAsThat) {
+    const Mesh inner = shapes::box({.05, .05, .05}, {.95, .95, .95});
+    const Mesh outer = shapes::box({-.05, -.05, -.05}, {1.05, 1.05, 1.05});
+    Mesh turned = shapes::cube();
+    for (Triangle& t : turned.triangles)
+        std::swap(t.y, t.z);
+    double x = 0;
+    for (const Mesh& stand_in : {inner, outer, turned})
+        place_group(stand_in, x += 100);
+    const std::vector<light::SkyShares> found = shares_of_stand_ins();
+    ASSERT_EQ(found.size(), 3u);
+    for (const light::SkyShares& shares : found) {
+        ASSERT_FALSE(shares.corners.empty());
+        for (const uint8_t corner : shares.corners)
+            EXPECT_GT(light::share_of_byte(corner), 0.95);
+    }
+}
+
+TEST_F(SkyOcclusionScenes, TheLightOnStandInsIsTheSameOnAnyNumberOfThreads) {
+    builder.place(builder.mesh(shapes::quad(900, 900)), at(-450, -450, -.2));
+    for (int i = 0; i < 3; ++i)
+        place_group(shapes::box({.05, .05, .05}, {.95, .95, .9 + .01 * i}), 2 * i);
+    const auto bytes = [&](int threads) {
+        const ThreadLimit limit(threads);
+        std::string all;
+        for (const light::SkyShares& shares : shares_of_stand_ins())
+            all += shares.bytes();
+        return all;
+    };
+    const std::string alone = bytes(1);
+    EXPECT_FALSE(alone.empty());
+    EXPECT_EQ(bytes(2), alone);
+    EXPECT_EQ(bytes(7), alone);
 }
 
 // Levels for classes of rays had a file for each of up to 257 factors.

@@ -34,6 +34,12 @@ constexpr double kReach = 2;
 // How far a place on the original moves from an edge, in parts of the way to its triangle's middle.
 // Taste: a larger value blurs what lies along edges.
 constexpr double kInward = 0.01;
+// How far above a place of the original what covers it is looked for, in parts of the level's error:
+// a level may show the wall behind its boards, whose light is theirs.
+// Taste: a larger value finds thicker boards, and gives more ground the light of a low roof above it
+// that is one sheet. It was looked at with the boards of one house alone.
+constexpr double kCover = 4;
+constexpr int kMostCovers = 4;  // Taste: more find the front of more boards in each other
 
 /// The map of normals: the transposed inverse, but for its length, where there is one. Under a
 /// placement that flattens all it is that of the flat side.
@@ -102,10 +108,22 @@ bool SkySampler::hidden_alone(const SkyRay& ray) const {
 }
 
 TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) const {
-    TriangleShares out;
     const std::optional<PlacedTriangle> placed = this->placed(mesh, triangle);
     if (!placed)
+        return {};
+    TriangleShares out = shares_of_front(mesh, triangle, *placed, rays);
+    if (request_.original == nullptr || !out.inside)
         return out;
+    PlacedTriangle turned = *placed;
+    turned.face = -turned.face;
+    turned.up = -turned.up;
+    const TriangleShares back = shares_of_front(mesh, triangle, turned, rays);
+    return back.inside ? out : back;
+}
+
+TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
+                                           const PlacedTriangle& placed, int rays) const {
+    TriangleShares out;
     const bool both = !request_.surface.opaque_slot(mesh.slot(triangle));
     const uint32_t first = static_cast<uint32_t>(triangle % kParts) * static_cast<uint32_t>(rays);
     uint32_t blocker = ray::PlacedScenes::kNothing;
@@ -114,7 +132,7 @@ TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) c
     // the triangle. Where one of the first kind begins inside of something, so does the other.
     for (int i = 0; i < rays; i += 2) {
         const uint32_t number = first + static_cast<uint32_t>(i / 2);
-        const SkyPlace place = this->place(mesh, triangle, *placed, number, near);
+        const SkyPlace place = this->place(mesh, triangle, placed, number, near);
         const double reach = place.longest * enlarged_;
         const SkyRay pair[] = {ray(place, false),
                                both ? ray(place, true) : ray(place, false, true)};
@@ -133,9 +151,9 @@ TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) c
         }
     }
     const bool dark = !both && out.share() < kDark;
-    out.inside = dark && lies_inside(mesh, triangle, *placed);
+    out.inside = dark && lies_inside(mesh, triangle, placed);
     if (dark && !out.inside && !closed_)
-        add_back(mesh, triangle, *placed, rays, out);
+        add_back(mesh, triangle, placed, rays, out);
     return out;
 }
 
@@ -197,6 +215,24 @@ void SkySampler::move_to_original(bool both, SkyPlace& place, uint32_t& near) co
         place.face = -place.face;
         place.up = -place.up;
         place.normal = -place.normal;
+    } else if (!both) {
+        move_out(place);
+    }
+}
+
+void SkySampler::move_out(SkyPlace& place) const {
+    const SkySurface& original = *request_.original;
+    for (int i = 0; i < kMostCovers; ++i) {
+        const glm::dvec3 from = place.at + (above_ + kAboveTriangle * place.longest) * place.face;
+        const ray::RayHit hit =
+            original.scene->first_hit(from, place.face, kCover * request_.error);
+        if (!hit.hit || !original.opaque_slot(original.mesh->slot(hit.triangle)))
+            return;
+        const std::optional<PlacedTriangle> there = placed(*original.mesh, hit.triangle);
+        if (!there || !(glm::dot(there->face, place.face) > 0))
+            return;
+        face_of(*original.mesh, hit.triangle, *there, normal_map_,
+                {1 - hit.u - hit.v, hit.u, hit.v}, place);
     }
 }
 

@@ -23,9 +23,9 @@ struct SkyRequest {
     int rays = 128;     // about so many tell the share of a corner
     size_t splits = 0;  // about how many triangles splits may add
     int most_rays = 0;  // as `rays`, where triangles are larger than the mean; fewer: none more
-    /// The finest level of the surface, in its frame: rays begin at the places of it that are
-    /// nearest, for a level lies behind some of its boards and before others. Null: it is the finest
-    /// one, or there is none.
+    /// The finest level of the surface, or all that it stands for, in its frame: rays begin at the
+    /// places of it that are nearest, for a level lies behind some of its boards and before others.
+    /// Null: it is the finest one, or there is none.
     const SkySurface* original = nullptr;
 };
 
@@ -62,6 +62,8 @@ public:
     };
     std::optional<PlacedTriangle> placed(const Mesh& mesh, size_t triangle) const;
 
+    /// The shares of a triangle: those of its back, where it is one of a level whose front lies
+    /// inside of the original. There a thin thing became flat, and the back may be what is seen.
     TriangleShares shares(const Mesh& mesh, size_t triangle, int rays) const;
 
     /// A place where rays begin.
@@ -97,12 +99,16 @@ public:
     bool lies_inside(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed) const;
 
 private:
+    TriangleShares shares_of_front(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed,
+                                   int rays) const;
     /// The face and the smooth normal of a place on a triangle.
     static void face_of(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed,
                         const glm::dmat3& normal_map, const std::array<double, 3>& weights,
                         SkyPlace& out);
     /// Moves a place to the original.
     void move_to_original(bool both, SkyPlace& place, uint32_t& near) const;
+    /// Moves a place that lies inside of the original, close below its surface, to that.
+    void move_out(SkyPlace& place) const;
 
     /// Makes the share of a dark triangle the mean of its sides: it may be the wall of a cave, or
     /// face the wrong way, and be seen from its back. Only the sky above counts there, for under a

@@ -58,6 +58,17 @@ protected:
         std::optional<SkyScene> scene;
     };
 
+    /// The mean of a level of something that hides the sky alone.
+    double mean_of_level(const Mesh& mesh, ObjectIndex original, double error) {
+        const ObjectIndex level = builder.mesh(mesh);
+        SkyPlace place(*this, {{original, {}}});
+        const std::vector<const Representation*> more{&finest(level)};
+        place.surfaces.add(more, {});
+        SkyRequest request{place.surfaces.of(finest(level)), {}, &*place.scene, error, 64, 0};
+        request.original = &place.surfaces.of(finest(original));
+        return sky_shares(request, {}).mean;
+    }
+
     SkyShares shares_alone(const Mesh& mesh) {
         const ObjectIndex object = builder.mesh(mesh);
         SkySurfaces surfaces(builder.model);
@@ -246,6 +257,28 @@ TEST_F(SkyVisibility, OfALevelAloneIsThatOfItsOriginalAlone) {
     SkyRequest request{surfaces.of(finest(inner)), {}, nullptr, 0.3, 64, 0};
     request.original = &surfaces.of(finest(original));
     EXPECT_GT(sky_shares(request, {}).mean, 0.98);
+}
+
+// A level showed the wall behind the boards, and was black, for the boards hide the sky.
+TEST_F(SkyVisibility, OfTheWallBehindBoardsIsThatOfTheBoards) {
+    Mesh house = shapes::box({0, 0, 0}, {1, 1, 1});
+    append(house, shapes::box({-0.1, -0.1, 0.98}, {1.1, 1.1, 1.05}), {});
+    const ObjectIndex original = builder.mesh(house);
+    for (const double height : {0.97, 1.0, 1.03, 1.08}) {
+        Mesh sheet = shapes::quad(1, 1);
+        for (glm::vec3& position : sheet.positions)
+            position.z = static_cast<float>(height);
+        EXPECT_GT(mean_of_level(sheet, original, 0.02), 0.98) << height;
+    }
+}
+
+// Boards that became flat face into the house here and there, and were black.
+TEST_F(SkyVisibility, OfALevelThatFacesIntoItsOriginalIsThatOfItsBack) {
+    const ObjectIndex original = builder.mesh(shapes::box({0, 0, 0}, {1, 1, 0.5}));
+    Mesh sheet = turned_inside_out(shapes::quad(1, 1));
+    for (glm::vec3& position : sheet.positions)
+        position.z = 0.5F;
+    EXPECT_GT(mean_of_level(sheet, original, 0.02), 0.98);
 }
 
 TEST_F(SkyVisibility, IsTheSameOnAnyNumberOfThreads) {
