@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the few factors of many placements: they are few, and light no less than all of them.
 #include "povray_export/lamp/placement_grades.h"
+#include "povray_export/lamp/sky_occlusion.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -34,4 +35,13 @@ TEST(PlacementGrades, ThereAreFourAtMostOfTheSameMeanAndOrder) {
     EXPECT_TRUE(std::is_sorted(grades.begin(), grades.end()));
     EXPECT_NEAR(std::accumulate(grades.begin(), grades.end(), 0.0),
                 std::accumulate(shares.begin(), shares.end(), 0.0), 1e-9);
+}
+
+TEST(SkyGrades, AreTheNearestToShares) {
+    EXPECT_EQ(grade_of_share(1), kSkyGrades - 1);
+    EXPECT_EQ(share_of_grade(kSkyGrades - 1), 1);
+    EXPECT_EQ(grade_of_share(0), 0);
+    EXPECT_EQ(grade_of_share(std::nan("")), 0);
+    for (int grade = 0; grade < kSkyGrades; ++grade)
+        EXPECT_EQ(grade_of_share(share_of_grade(static_cast<uint8_t>(grade))), grade);
 }

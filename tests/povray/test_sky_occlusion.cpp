@@ -126,15 +126,6 @@ Affine at(double x, double y, double z) {
 
 }  // namespace
 
-TEST_F(SkyOcclusionScenes, GradesAreTheNearestToShares) {
-    EXPECT_EQ(grade_of_share(1), kSkyGrades - 1);
-    EXPECT_EQ(share_of_grade(kSkyGrades - 1), 1);
-    EXPECT_EQ(grade_of_share(0), 0);
-    EXPECT_EQ(grade_of_share(std::nan("")), 0);
-    for (int grade = 0; grade < kSkyGrades; ++grade)
-        EXPECT_EQ(grade_of_share(share_of_grade(static_cast<uint8_t>(grade))), grade);
-}
-
 TEST_F(SkyOcclusionScenes, UnderARoofItIsAsDarkAsTheSkyThatIsSeen) {
     if (!scenes::have_povray())
         GTEST_SKIP() << "no povray";
