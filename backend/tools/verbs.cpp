@@ -31,8 +31,8 @@ const std::vector<CommandVerb>& verbs() {
         {"simplify",
          "IN OUT",
          "the same model with fewer triangles",
-         "Give one of --ratio, --triangles, --error and --pixels. IN and OUT are .obj, .ply or "
-         ".glb.\n"
+         "Give one of --ratio, --triangles, --error and --pixels. IN is any file that measure "
+         "reads, OUT .obj, .ply or .glb.\n"
          "The distance to the original is measured with --error, --pixels and --measure only.",
          2,
          {{"mode", "MODE", "best, fast (default) or cluster (fastest; parts may grow together)"},

@@ -134,7 +134,8 @@ def redraw(context):
 @bpy.app.handlers.persistent
 def _on_change(scene, depsgraph):
     """Cameras and lenses may move: they are those of the moment. Lights may where what is dark is
-    as fine as the rest. Everything else makes it out of date."""
+    as fine as the rest. Objects that move or change their shape make it out of date, materials do
+    not."""
     own = SceneSettings(scene)
     lit = quality_settings.is_coarser_moving_dark(own)
     if any(_counts(update, lit) for update in depsgraph.updates):
