@@ -294,7 +294,7 @@ const Value& MaskOutlines::SharedValues<Value>::of(Hash key, const std::function
     return entry->value;
 }
 
-MaskOutlines::MaskOutlines(std::filesystem::path file)
+MaskOutlines::MaskOutlines(const std::filesystem::path& file)
     : findings_(file, kVersion), keeps_(!file.empty()) {}
 
 template <typename Value>

@@ -37,7 +37,7 @@ struct ShownMask {
 class MaskOutlines {
 public:
     /// `file`: what keeps them from export to export; "": nothing does.
-    explicit MaskOutlines(std::filesystem::path file = {});
+    explicit MaskOutlines(const std::filesystem::path& file = {});
 
     /// The alpha of a texture. Throws Error(BadFile).
     MaskTexelsPtr texels(const Texture& texture);

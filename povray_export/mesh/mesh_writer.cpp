@@ -175,7 +175,7 @@ private:
         for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
             check_job_sometimes(i);
             const Triangle& t = mesh_.triangles[i];
-            if (written_ != WrittenTriangles::All &&
+            if (written_ != WrittenTriangles::All && textures_ != nullptr &&
                 textures_->is_glass(i) != (written_ == WrittenTriangles::Glass))
                 continue;
             if (narrow_ ? flat_on_lattice<int64_t>(points_[t.x], points_[t.y], points_[t.z])
