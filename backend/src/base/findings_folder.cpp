@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <charconv>
 #include <tuple>
-#include <vector>
 
 namespace lodestone {
 namespace {
@@ -39,23 +38,19 @@ FindingsFolder::FindingsFolder(fs::path folder, std::string_view ending)
 FindingsFolder::~FindingsFolder() {
     if (!added_)
         return;
-    std::error_code error;
-    std::vector<std::tuple<fs::file_time_type, uint64_t, fs::path>> files;
+    std::vector<std::tuple<fs::file_time_type, fs::path, uint64_t>> files;
     uint64_t sum = 0;
-    for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
-        std::error_code one;
-        const uint64_t bytes = at->file_size(one);
-        const fs::file_time_type time = at->last_write_time(one);
-        if (one || at->path().extension() != ending_)
-            continue;
-        files.emplace_back(time, bytes, at->path());
-        sum += bytes;
+    for (const NamedFile& named : named_files()) {
+        std::error_code error;
+        files.emplace_back(fs::last_write_time(named.path, error), named.path, named.file.bytes);
+        sum += named.file.bytes;
     }
     std::sort(files.begin(), files.end());
-    for (const auto& [time, bytes, path] : files) {
+    for (const auto& [time, path, bytes] : files) {
         if (sum <= kMostBytes)
             break;
         sum -= bytes;
+        std::error_code error;
         fs::remove(path, error);
     }
 }
@@ -64,10 +59,9 @@ fs::path FindingsFolder::path_of(Hash key, Hash sum) const {
     return folder_ / (hex16(key) + '-' + hex16(sum) + ending_);
 }
 
-void FindingsFolder::look() {
-    if (looked_ || folder_.empty())
-        return;
-    looked_ = true;
+/// The files that have a name of a finding; others are somebody else's.
+std::vector<FindingsFolder::NamedFile> FindingsFolder::named_files() const {
+    std::vector<NamedFile> out;
     std::error_code error;
     for (fs::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
         const std::string name = at->path().filename().string();
@@ -80,8 +74,17 @@ void FindingsFolder::look() {
         std::error_code one;
         const uint64_t bytes = at->file_size(one);
         if (key && sum && !one)
-            known_[*key] = {*sum, bytes};
+            out.push_back({*key, {*sum, bytes}, at->path()});
     }
+    return out;
+}
+
+void FindingsFolder::look() {
+    if (looked_ || folder_.empty())
+        return;
+    looked_ = true;
+    for (const NamedFile& named : named_files())
+        known_[named.key] = named.file;
 }
 
 std::optional<std::string> FindingsFolder::find(Hash key) {

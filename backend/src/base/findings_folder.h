@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 namespace lodestone {
 
@@ -20,7 +21,8 @@ public:
     /// Looks at the folder when asked for the first time; an empty path keeps nothing. `ending`:
     /// of the files, with its dot.
     FindingsFolder(std::filesystem::path folder, std::string_view ending);
-    /// Removes the files that nobody asked for longest, where all take more than kMostBytes.
+    /// Removes the files that nobody asked for longest, where all take more than kMostBytes: of
+    /// those that have such a name.
     ~FindingsFolder();
     FindingsFolder(const FindingsFolder&) = delete;
     FindingsFolder& operator=(const FindingsFolder&) = delete;
@@ -39,6 +41,13 @@ private:
         uint64_t bytes = 0;
     };
 
+    struct NamedFile {
+        Hash key = 0;
+        FolderFile file;
+        std::filesystem::path path;
+    };
+
+    std::vector<NamedFile> named_files() const;
     void look();
     std::filesystem::path path_of(Hash key, Hash sum) const;
 

@@ -70,6 +70,8 @@ TEST(FindingsFolder, DamagedFilesAreNotFoundAndReplaced) {
 TEST(FindingsFolder, TheOldestAreRemovedWhereAllAreTooLarge) {
     const fs::path folder = absent_folder("many") / "baked";
     const std::string large(FindingsFolder::kMostBytes / 4, 'x');
+    fs::create_directories(folder);
+    write_file(folder / "picture.png", "not a finding");
     for (Hash key = 0; key < 6; ++key) {
         FindingsFolder one(folder, ".png");
         one.add(key, large);
@@ -81,7 +83,8 @@ TEST(FindingsFolder, TheOldestAreRemovedWhereAllAreTooLarge) {
     EXPECT_TRUE(last.find(0));
     EXPECT_FALSE(last.find(1));
     EXPECT_TRUE(last.find(5));
-    EXPECT_LE(files_in(folder), 4u);
+    EXPECT_LE(files_in(folder), 5u);
+    EXPECT_EQ(read_file(folder / "picture.png"), "not a finding");
     last.add(9, large + large + large + large + large);
     EXPECT_FALSE(last.find(9));
 }
