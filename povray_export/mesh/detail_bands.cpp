@@ -17,12 +17,10 @@ namespace {
 /// Taste: a larger value asks less often, and draws more as finely as its finest triangle.
 constexpr size_t kFewTogether = 8;
 
-}  // namespace
-
 /// The tree of a mesh's triangles, with the size that each node has.
-class DetailBands::BandTree {
+class BandTree {
 public:
-    BandTree(const Mesh& mesh, const PixelOfPart& pixel, std::vector<BandNode>& nodes)
+    BandTree(const Mesh& mesh, const DetailBands::PixelOfPart& pixel, std::vector<BandNode>& nodes)
         : mesh_(mesh), pixel_(pixel), nodes_(nodes), order_(mesh.triangles.size()) {
         std::iota(order_.begin(), order_.end(), 0u);
         boxes_.resize(order_.size());
@@ -66,12 +64,14 @@ public:
 
 private:
     const Mesh& mesh_;
-    const PixelOfPart& pixel_;
+    const DetailBands::PixelOfPart& pixel_;
     std::vector<BandNode>& nodes_;
     std::vector<uint32_t> order_;
     std::vector<Box3> boxes_;  // by triangle
     std::vector<double> sizes_;
 };
+
+}  // namespace
 
 DetailBands::DetailBands(const Mesh& mesh, const PixelOfPart& pixel)
     : finest_(std::numeric_limits<double>::infinity()) {

@@ -13,6 +13,14 @@
 
 namespace lodestone::povray {
 
+/// A part of a mesh; its first half follows in the list, then its second one.
+struct BandNode {
+    glm::vec3 low{0.0f};
+    glm::vec3 high{0.0f};
+    uint32_t next = 0;     // the node after this one and all of its parts
+    uint32_t octaves = 0;  // the fewest of them
+};
+
 /// The octaves by which parts of a mesh may be coarser: twice as coarse is one octave.
 class DetailBands {
 public:
@@ -37,15 +45,6 @@ public:
     static constexpr int kMost = 16;
 
 private:
-    /// A part of the mesh; its first half follows, then its second one.
-    struct BandNode {
-        glm::vec3 low{0.0f};
-        glm::vec3 high{0.0f};
-        uint32_t next = 0;     // the node after this one and all of its parts
-        uint32_t octaves = 0;  // the fewest of them
-    };
-    class BandTree;
-
     std::vector<BandNode> nodes_;  // in depth-first order
     double finest_;
     Hash hash_ = 0;

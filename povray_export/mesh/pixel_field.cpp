@@ -27,8 +27,7 @@ double PixelField::at(const Bound& bound, double z) const {
     return choose::pixel_size(view_, z) * (off_screen_ ? off_screen_->coarser(bound, z) : 1);
 }
 
-DetailBandsPtr PixelField::bands(const Mesh& mesh, const Affine& world) const {
-    const Bound all = transformed(bound_of(mesh.positions), world);
+DetailBandsPtr PixelField::bands(const Mesh& mesh, const Affine& world, const Bound& all) const {
     if (all.radius < kNear * distance(all, view_.camera.position))
         return nullptr;
     const auto corner = [&](uint32_t vertex) { return world(glm::dvec3(mesh.positions[vertex])); };

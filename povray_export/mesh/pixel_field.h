@@ -25,9 +25,9 @@ public:
     /// The same where the nearest of what is there is z metres from the eye.
     double at(const Bound& bound, double z) const;
 
-    /// How the parts of a placed mesh are seen, where some may be seen less finely than others; null:
+    /// How the parts of a placed mesh with this bound (world frame) are seen, where some may be seen less finely than others; null:
     /// it is so small for its distance that all are alike. Their unit is a metre in the world.
-    DetailBandsPtr bands(const Mesh& mesh, const Affine& world) const;
+    DetailBandsPtr bands(const Mesh& mesh, const Affine& world, const Bound& all) const;
 
     /// Whether the picture may show nothing but shadows of what is within a bound (world frame).
     bool only_shadows(const Bound& bound) const;

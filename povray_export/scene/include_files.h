@@ -57,7 +57,8 @@ public:
     /// frame.
     void note_texel(size_t index, double texel);
     /// Gives the files their names, once all are added and seen. Files that would only differ in
-    /// how masks are cut, while these are not or not differently, become one. Where masks of all
+    /// how masks are cut, while these are not or not differently, become one. What only casts
+    /// shadows has the file of a use that is seen, if there is any. Where masks of all
     /// files would become more triangles than are left of a memory budget (in bytes; 0: none) of
     /// which `used` are, those that become most are cut less. Files beside r/*.inc keep what is to
     /// be cut for the next export.

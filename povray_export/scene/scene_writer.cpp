@@ -251,8 +251,9 @@ private:
             if (users[use.file] != 1 || !includes_.varies(use.file))
                 return;
             job_.check();
-            const Mesh& mesh = includes_.at(use.file).representation->mesh();
-            if (const DetailBandsPtr bands = pixels_.bands(mesh, use.world)) {
+            const Representation& shown = *includes_.at(use.file).representation;
+            const Bound all = transformed(shown.summary.bound, use.world);
+            if (const DetailBandsPtr bands = pixels_.bands(shown.mesh(), use.world, all)) {
                 const double pixel = bands->finest() / enlarged(use);
                 includes_.set_bands(use.file, bands, outline_of(pixel),
                                     shading_.texture_error * pixel);

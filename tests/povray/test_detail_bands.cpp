@@ -125,9 +125,10 @@ TEST(PixelField, AGroundThatReachesUnderTheEyeWasSeenFromNoDistance) {
     view.camera.up = glm::normalize(glm::dvec3(0, 0.1, 1));
     view.camera.direction = glm::normalize(glm::dvec3(0, 1, -0.1));
     const PixelField field(model, view);
-    const DetailBandsPtr bands = field.bands(ground, {});
+    const DetailBandsPtr bands = field.bands(ground, {}, bound_of(ground.positions));
     ASSERT_TRUE(bands);
     EXPECT_NEAR(bands->finest(), choose::pixel_size(view, 2), 1e-9);
     const Mesh leaf = card();
-    EXPECT_FALSE(field.bands(leaf, {glm::dmat3(1.0), {0, 500, 0}}));
+    const Affine away{glm::dmat3(1.0), {0, 500, 0}};
+    EXPECT_FALSE(field.bands(leaf, away, transformed(bound_of(leaf.positions), away)));
 }
