@@ -31,7 +31,8 @@ def now(kept: Any, scene: Any, depsgraph: Any) -> "kept_model.Asked":
 
 
 def old(kept: Any, scene: Any) -> bool:
-    """Whether the scene is not any more as it was read, or was read without what moves."""
+    """Whether the scene is not any more as it was read, or was read without what moves
+    or lies in the dark: lights that changed meanwhile did not count."""
     own, read_with = SceneSettings(scene), kept.view.modifiers
     moving = quality_settings.is_coarser_moving_dark(own)
     still = read_with is None or not read_with.when_moving
