@@ -66,7 +66,7 @@ struct SkyOcclusionOptions {
 /// that rests, whatever the cut draws, so that shade does not change as the camera moves. A thing
 /// that is placed once has the shares of its corners as it stands there. What is placed more often
 /// has those of its own shape, times one of at most four grades of what is around its placement.
-/// Levels have the light of the nearest places of their finest level, and what stands in for a group
+/// Levels have the light of the outermost places near them of their finest level, and what stands in for a group
 /// that of all below it. What moves in an animation hides the sky from itself alone.
 class SkyOcclusion {
 public:

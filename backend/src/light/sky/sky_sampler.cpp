@@ -28,18 +28,15 @@ constexpr double kAboveMesh = 4e-6;  // Law: as kAboveTriangle
 // And in parts of how far the thing is from where the coordinates of all that hides the sky begin.
 // Law: eight times the rounding of single precision; a ray and what it meets are rounded once each.
 constexpr double kAboveRounding = 4.8e-7;
-// How far the original is looked for that faces as a level does, in parts of the level's error.
+// How far on both sides of a level its original is looked for, in parts of the level's error.
 // Law: the level is nowhere farther from it, and twice is a margin.
 constexpr double kReach = 2;
 // How far a place on the original moves from an edge, in parts of the way to its triangle's middle.
 // Taste: a larger value blurs what lies along edges.
 constexpr double kInward = 0.01;
-// How far above a place of the original what covers it is looked for, in parts of the level's error:
-// a level may show the wall behind its boards, whose light is theirs.
-// Taste: a larger value finds thicker boards, and gives more ground the light of a low roof above it
-// that is one sheet. It was looked at with the boards of one house alone.
-constexpr double kCover = 4;
-constexpr int kMostCovers = 4;  // Taste: more find the front of more boards in each other
+// The faces that are passed on the way to one that faces alike.
+// Taste: more find what lies behind more sheets.
+constexpr int kMostCovers = 4;
 
 /// The map of normals: the transposed inverse, but for its length, where there is one. Under a
 /// placement that flattens all it is that of the flat side.
@@ -192,8 +189,11 @@ SkySampler::SkyPlace SkySampler::place(const Mesh& mesh, size_t triangle,
 }
 
 void SkySampler::move_to_original(bool both, SkyPlace& place, uint32_t& near) const {
+    if (!both && move_to_outermost(place))
+        return;
     const SkySurface& original = *request_.original;
-    // A face that points the same way comes first: the front of a thin board is not its back.
+    // Beside the original: a face that points the same way comes first, for the front of a thin
+    // board is not its back.
     ray::ClosestPoint found;
     if (!both)
         found = original.scene->closest_facing(place.at, place.face, kReach * request_.error, near);
@@ -215,25 +215,32 @@ void SkySampler::move_to_original(bool both, SkyPlace& place, uint32_t& near) co
         place.face = -place.face;
         place.up = -place.up;
         place.normal = -place.normal;
-    } else if (!both) {
-        move_out(place);
     }
 }
 
-void SkySampler::move_out(SkyPlace& place) const {
+bool SkySampler::move_to_outermost(SkyPlace& place) const {
     const SkySurface& original = *request_.original;
-    for (int i = 0; i < kMostCovers; ++i) {
-        const glm::dvec3 from = place.at + (above_ + kAboveTriangle * place.longest) * place.face;
-        const ray::RayHit hit =
-            original.scene->first_hit(from, place.face, kCover * request_.error);
-        if (!hit.hit || !original.opaque_slot(original.mesh->slot(hit.triangle)))
-            return;
+    const glm::dvec3 inward = -place.face;
+    double left = 2 * kReach * request_.error;
+    if (!std::isfinite(left))
+        return false;
+    glm::dvec3 from = place.at - 0.5 * left * inward;
+    for (int i = 0; i < kMostCovers && left > 0; ++i) {
+        const ray::RayHit hit = original.scene->first_hit(from, inward, left);
+        if (!hit.hit)
+            return false;
         const std::optional<PlacedTriangle> there = placed(*original.mesh, hit.triangle);
-        if (!there || !(glm::dot(there->face, place.face) > 0))
-            return;
-        face_of(*original.mesh, hit.triangle, *there, normal_map_,
-                {1 - hit.u - hit.v, hit.u, hit.v}, place);
+        if (there && original.opaque_slot(original.mesh->slot(hit.triangle)) &&
+            glm::dot(there->face, place.face) > 0) {
+            face_of(*original.mesh, hit.triangle, *there, normal_map_,
+                    {1 - hit.u - hit.v, hit.u, hit.v}, place);
+            return true;
+        }
+        const double step = hit.t + above_ + (there ? kAboveTriangle * there->longest : 0);
+        from += step * inward;
+        left -= step;
     }
+    return false;
 }
 
 SkySampler::SkyRay SkySampler::ray(const SkyPlace& place, bool back, bool opposite) const {

@@ -24,7 +24,7 @@ struct SkyRequest {
     size_t splits = 0;  // about how many triangles splits may add
     int most_rays = 0;  // as `rays`, where triangles are larger than the mean; fewer: none more
     /// The finest level of the surface, or all that it stands for, in its frame: rays begin at the
-    /// places of it that are nearest, for a level lies behind some of its boards and before others.
+    /// places of it that the level shows, for it lies behind some of its boards and before others.
     /// Null: it is the finest one, or there is none.
     const SkySurface* original = nullptr;
 };
@@ -107,8 +107,9 @@ private:
                         SkyPlace& out);
     /// Moves a place to the original.
     void move_to_original(bool both, SkyPlace& place, uint32_t& near) const;
-    /// Moves a place that lies inside of the original, close below its surface, to that.
-    void move_out(SkyPlace& place) const;
+    /// Moves a place to the outermost face of the original, within the level's error, that faces
+    /// alike: that is what the level shows there. False: there is none.
+    bool move_to_outermost(SkyPlace& place) const;
 
     /// Makes the share of a dark triangle the mean of its sides: it may be the wall of a cave, or
     /// face the wrong way, and be seen from its back. Only the sky above counts there, for under a

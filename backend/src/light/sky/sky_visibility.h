@@ -13,7 +13,7 @@ namespace lodestone::light {
 /// with half of its back's where that is dark and the mesh is open; one with masks or clear
 /// materials (leaves) has the mean of both sides. Triangles that lie inside
 /// of something opaque tell nothing to corners that others share. A level has the light of its
-/// original: rays begin at the nearest places of that, facing alike. The result does not depend on the
+/// original: rays begin at the places of that which it shows, facing alike. The result does not depend on the
 /// number of threads. cost: `rays` rays a vertex, and a quarter more for splits
 SkyShares sky_shares(const SkyRequest& request, const Job& job);
 
