@@ -107,6 +107,7 @@ def compare_fills_the_slots():
         return ended and not bpy.app.is_job_running("RENDER")
 
     yield from steps.wait_until(compared, 120.0)
+    yield from steps.wait_until(steps.takes_operators)
     assert bpy.data.images["Render Result"].render_slots.active_index == 2
     assert scene.render.use_compositing == before
     assert addon_session().comparisons.get("Scene").pixels > 100

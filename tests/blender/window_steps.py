@@ -29,6 +29,16 @@ def window():
     return bpy.context.temp_override(window=first, area=area, region=region)
 
 
+def takes_operators():
+    """Whether Blender takes operators now: a render that just ended may still hold its data."""
+    try:
+        with window():
+            bpy.ops.ed.undo_push(message="Step")
+    except RuntimeError:
+        return False
+    return True
+
+
 def press(key):
     """A key, as if pressed in the window (needs --enable-event-simulate)."""
     first = bpy.context.window_manager.windows[0]

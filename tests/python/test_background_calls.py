@@ -40,6 +40,15 @@ class Waiting(unittest.TestCase):
         with self.assertRaises(Stopped):
             self.work.run(self.long_call, self.work.stop)
 
+    def test_work_that_ended_as_it_was_stopped_still_gave_its_result(self):
+        def ends_at_once():
+            while not self.work.stopping:
+                self.ended.wait(0.01)
+            return 7
+
+        with self.assertRaises(Stopped):
+            self.work.run(ends_at_once, self.work.stop)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -84,9 +84,11 @@ def start(function: Callable[[], Any], outcome: dict[str, Any]) -> threading.Thr
 
 
 def finish(outcome: dict[str, Any], stopping: bool) -> Any:
+    """What the function returned; raises what it raised. Stopped when the work was stopped, also
+    when it ended by itself before it saw that."""
     error = outcome.get("error")
+    if stopping or getattr(error, "cancelled", False):
+        raise Stopped from error
     if error is not None:
-        if stopping or getattr(error, "cancelled", False):
-            raise Stopped from error
         raise error
     return outcome["result"]
