@@ -4,6 +4,7 @@
 #include "povray_export/scene/povray_number.h"
 #include "povray_export/texture/grazing_gloss.h"
 #include "povray_export/texture/height_map.h"
+#include "povray_export/texture/lamp_gloss.h"
 #include "povray_export/texture/pigment_picture.h"
 #include "povray_export/texture/surface_finish.h"
 
@@ -321,8 +322,15 @@ private:
         out.even = out.lamp ? glm::dvec3(0.0) : emission;
         out.plain =
             out.gloss || (image && (out.white != glm::dvec3(0.0) || out.even != glm::dvec3(0.0)));
+        std::optional<LampGloss> lamps;
+        if (!surface_.layered && !image && !out.lamp && emission == glm::dvec3(0.0))
+            lamps = lamp_gloss(look);
         out.pigment = "pigment{";
-        if (image) {
+        if (lamps) {
+            LampGlossText text = lamp_gloss_text(*lamps, base * paint, out.finish, sky);
+            out.pigment = std::move(text.pigment);
+            out.finish = text.finish;
+        } else if (image) {
             Texture texture = material.base_color_texture;
             if (painted > 0)
                 texture.offset *= paint / painted;

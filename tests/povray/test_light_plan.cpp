@@ -346,7 +346,7 @@ TEST_F(LightPlanTest, WhatLampsOfGroupsLightHasNoLayers) {
         scenes::write(builder.model, from_above(1), options, problems);
         size_t count = 0;
         for (const auto& file : std::filesystem::directory_iterator(options.folder / "r"))
-            count += count_of(read_file(file.path()), "aoi");
+            count += count_of(read_file(file.path()), "aoi pigment_map");
         return count;
     };
     EXPECT_EQ(layers("many", {}), 0u);

@@ -14,7 +14,13 @@ row per roughness, what is left in 255ths, and what is left with the best highli
 grow. The matte surface below changes by angle, too (Disney's diffuse term): `matte` is
 its answer to the sky over that of facing. The layer of gloss lets that much through, so that it
 covers less where the surface is bright, and its pigment is brighter by as much. Then the sky at
-other values of specular, over that at 0.5. Takes 3 minutes; needs numpy.
+other values of specular, over that at 0.5.
+
+LAMP rows are the gloss without a layer, on grays of 0.03 and 0.18: white in the pigment (`white`
+times what the sky's reflection grows by the angle) and a highlight times 1 - metallic (1 - F). F is
+POV-Ray's Fresnel term of the angle of the lamp: `metallic` fades the highlight of a pigment that is
+nearly black. `bright` is the mean of the fitted pictures over Cycles', on both grays.
+Takes 5 minutes; needs numpy.
 """
 
 import itertools
@@ -38,6 +44,10 @@ EXPONENTS = 1.2 ** np.arange(1, 30)
 GROWTHS = np.arange(0, 30.5, 1)
 ALBEDOS = np.geomspace(0.003, 0.1, 24)
 GRAY = 0.18
+LAMP_GRAYS = (0.03, 0.18)
+METALLICS = (0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.93, 0.95, 0.97, 0.98)
+HIGHLIGHTS = np.geomspace(0.02, 2, 30)
+WHITES = np.linspace(0, 1, 9)
 VEIL = 0.25  # the least share that the layer covers, as in texture_writer.cpp
 
 
@@ -164,13 +174,18 @@ def pigment(sky, matte):
     return sky / sky[0] * covers[0] / covers
 
 
-def fit(white, suns):
-    """(left, exponent, growth, albedo) of one roughness, and what is left without growth."""
-    half, facing, kept = geometry()
+def weights_of(facing):
+    """How much each sun and angle of view counts."""
     angles = np.radians(ANGLES)
     ball = np.sin(angles) * np.cos(angles) + 0.05  # as often as a ball shows it, and all alike
     weights = ball / ball.sum() + 1 / len(angles)
-    weights = weights[None, :] * np.where(facing < math.cos(math.radians(80)), 0.4, 1)[:, None]
+    return weights[None, :] * np.where(facing < math.cos(math.radians(80)), 0.4, 1)[:, None]
+
+
+def fit(white, suns):
+    """(left, exponent, growth, albedo) of one roughness, and what is left without growth."""
+    half, facing, kept = geometry()
+    weights = weights_of(facing)
     base = GRAY * facing[:, None]
     target = encoded(base + suns)
     found = []
@@ -181,6 +196,32 @@ def fit(white, suns):
             wrong = ((encoded(base + albedo * unit) - target) ** 2 * weights).sum() / weights.sum()
             found.append((255 * math.sqrt(wrong), exponent, growth, albedo))
     return min(found), min(one[0] for one in found if one[2] == 0)
+
+
+def fit_lamps(sky, suns):
+    """(left, exponent, metallic, albedo, white) of one roughness, and the brightness on both
+    grays."""
+    half, facing, kept = geometry()
+    weights = weights_of(facing)
+    weights /= weights.sum()
+    bases = np.array(LAMP_GRAYS)[:, None, None] * facing[:, None]
+    target = encoded(bases + suns)
+    found = []
+    for white in WHITES:
+        under = bases + white * (sky - sky[0])[None, :] * facing[:, None]
+        for exponent, metallic in itertools.product(EXPONENTS, METALLICS):
+            unit = (exponent + 2) / 8 * half**exponent * (1 - metallic * kept)[:, None]
+            for albedo in HIGHLIGHTS:
+                wrong = ((encoded(under + albedo * unit) - target) ** 2 * weights).sum()
+                left = 255 * math.sqrt(wrong / len(bases))
+                found.append((left, exponent, metallic, albedo, white))
+    best = min(found)
+    _, exponent, metallic, albedo, white = best
+    unit = (exponent + 2) / 8 * half**exponent * (1 - metallic * kept)[:, None]
+    drawn = bases + white * (sky - sky[0])[None, :] * facing[:, None] + albedo * unit
+    bright = (encoded(drawn) * weights).sum(axis=(1, 2)) / (target * weights).sum(axis=(1, 2))
+    albedo *= 1 - 2 ** (-exponent / 2 - 1)  # POV-Ray's is (exponent + 2) / (8 - 4 / 2^(exponent/2))
+    return (best[0], exponent, metallic, albedo, white), bright
 
 
 def main():
@@ -197,6 +238,12 @@ def main():
             f"FIT {roughness:4.2f} exponent {exponent:6.1f} albedo {albedo:.4f} growth {growth:g} "
             f"sky {sky[row][columns].round(3)} matte {mattes[row][columns].round(3)} "
             f"left {left:5.2f}, without growth {plain:5.2f}"
+        )
+    for row, roughness in enumerate(ROUGHNESS):
+        (left, exponent, metallic, albedo, white), bright = fit_lamps(sky[row], suns[:, row])
+        print(
+            f"LAMP {roughness:4.2f} exponent {exponent:6.1f} albedo {albedo:.4f} "
+            f"metallic {metallic:g} white {white:.3f} left {left:5.2f} bright {bright.round(3)}"
         )
     for specular in (0.2, 1.0):
         ratio = sky_of(build(specular)) / sky
