@@ -3,6 +3,7 @@
 // of view, and casts no shadow ray more.
 #include "light/light_plan.h"
 #include "povray/povray_scenes.h"
+#include "povray_export/lamp/renderer_surfaces.h"
 #include "povray_export/texture/lamp_gloss.h"
 #include "povray_export/texture/texture_writer.h"
 
@@ -19,8 +20,8 @@ Material rough(double gray) {
 }
 
 /// The radiance of a square, turned away from the eye, of a scene with many weak lamps.
-double radiance(const Material& material, double degrees, double sky, std::optional<Light> sun = {},
-                size_t lamps = light::kManyLamps) {
+double radiance(const Material& material, double degrees, double sky,
+                std::optional<Light> other = {}, size_t lamps = light::kManyLamps) {
     const double angle = degrees / 180 * kPi;
     Affine place;
     place.linear[0] = glm::dvec3(std::cos(angle), 0, -std::sin(angle)) / std::cos(angle);
@@ -30,8 +31,8 @@ double radiance(const Material& material, double degrees, double sky, std::optio
         at -= glm::vec3(1, 1, 0);
     scenes::Builder builder;
     builder.model.world.color = glm::dvec3(sky);
-    if (sun)
-        builder.model.lights.push_back(*sun);
+    if (other)
+        builder.model.lights.push_back(*other);
     Light lamp;
     lamp.kind = LightKind::Point;
     lamp.power = 1e-6;
@@ -101,6 +102,28 @@ TEST(PovrayRenderLampGloss, ALowLampShinesOnWhatIsSeenAgainstIt) {
     EXPECT_LT(high, 0.18);
     EXPECT_GT(low, 0.3);
     EXPECT_LT(low, 0.5);
+}
+
+// Lamps were left out of the plan whose gloss then ended at the border of a region.
+TEST(PovrayRenderLampGloss, ThePlanJudgesItAsPovrayDrawsIt) {
+    if (!scenes::have_povray())
+        GTEST_SKIP() << "no POV-Ray";
+    for (const double degrees : {20.0, 60.0, 75.0}) {
+        const double angle = degrees / 180 * kPi;
+        Light lamp;
+        lamp.kind = LightKind::Point;
+        lamp.power = 1e4;
+        lamp.position = {20 * std::sin(2 * angle), 0, 20 * std::cos(2 * angle)};
+        light::LitPoint point;  // in the middle of the square of radiance()
+        point.normal = {std::sin(angle), 0, std::cos(angle)};
+        Model model;
+        model.materials = {rough(0.1)};
+        const light::SurfaceReflection surface = renderer_surfaces(model).reflections[0];
+        point.albedo = surface.albedo;
+        point.highlight = surface.highlight;
+        const double planned = light::sent_radiance(lamp, point).y;
+        EXPECT_NEAR(radiance(model.materials[0], degrees, 0, lamp) / planned, 1, 0.1) << degrees;
+    }
 }
 
 TEST(PovrayRenderLampGloss, TheSkyIsReflectedAsFewLampsHaveIt) {

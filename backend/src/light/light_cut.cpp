@@ -414,21 +414,6 @@ private:
 
 }  // namespace
 
-glm::dvec3 sent_radiance(const Light& light, const LitPoint& point) {
-    const glm::dvec3 arrives = arriving_radiance(light, point.position, point.normal);
-    if (!(arrives.x + arrives.y + arrives.z > 0))
-        return glm::dvec3(0.0);
-    glm::dvec3 albedo = point.albedo;
-    if (point.gloss > 0) {
-        const glm::dvec3 half = glm::normalize(light.position - point.position) + point.to_eye;
-        const double length = glm::length(half);
-        const double cosine = length > 0 ? glm::dot(half, point.normal) / length : 0;
-        if (cosine > 0)
-            albedo += point.gloss * (point.exponent + 8) / 8 * std::pow(cosine, point.exponent);
-    }
-    return albedo * arrives;
-}
-
 bool may_matter(std::span<const Light* const> lamps, const LitPoint& point, double pixel_error) {
     const glm::dvec3 allowed =
         kUntried * light_tolerance(point.other_light, std::min(pixel_error, kMostLeftOut));

@@ -3,23 +3,9 @@
 #pragma once
 
 #include "light/light_tree.h"
+#include "light/sent_radiance.h"
 
 namespace lodestone::light {
-
-/// A point of a surface that a view shows.
-struct LitPoint {
-    glm::dvec3 position{0.0};
-    glm::dvec3 aside{0.0};       // the way to where its rays begin
-    glm::dvec3 normal{0, 0, 1};  // has length 1; toward the side from which it is seen
-    glm::dvec3 to_eye{0, 0, 1};  // has length 1
-    glm::dvec3 albedo{0.8};
-    glm::dvec3 other_light{0.0};  // the radiance it sends to the eye from suns and sky
-    double gloss = 0;             // the albedo of its highlight
-    double exponent = 1;          // that of the cosine of its highlight's half vector
-    uint32_t region = 0;          // the points of one region are lit by the same lights
-    /// The points next to it: lamps that reach these count as reaching it.
-    std::vector<uint32_t> beside;
-};
 
 /// The share (0...1) of a light that reaches a point, 0 for a hidden light. `blocker`: the
 /// function's own number of what hid the light from a point beside, kept by the caller; it does not
@@ -30,9 +16,6 @@ inline constexpr uint32_t kNoBlocker = ~uint32_t{0};
 /// The points in a row that one thread asks for; the same things mostly hide a light from them.
 /// Taste: longer rows try the last blocker more often and share the work less evenly.
 inline constexpr size_t kPointStrip = 128;
-
-/// The radiance that a point sends to the eye from a light that nothing hides.
-glm::dvec3 sent_radiance(const Light& light, const LitPoint& point);
 
 /// Whether lamps may matter at a point: all together, if nothing hid them, they would be more than a
 /// quarter of what it may be off by.

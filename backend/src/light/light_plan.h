@@ -15,9 +15,8 @@ namespace lodestone::light {
 /// How much light a material sends back, as the renderer draws it.
 struct SurfaceReflection {
     glm::dvec3 albedo{0.8};  // the diffuse share of each color
-    double gloss = 0;        // the albedo of its highlight
-    double exponent = 1;     // that of the cosine in its highlight
-    bool mirror = false;     // rays go on from it, mirrored or refracted
+    SurfaceHighlight highlight;
+    bool mirror = false;  // rays go on from it, mirrored or refracted
 };
 
 /// The surfaces of a model as its renderer draws them.

@@ -180,8 +180,7 @@ std::vector<LitPoint> LitScene::followed(SightRay ray) const {
             lit_point.normal = normal;
             lit_point.to_eye = -ray.direction;
             lit_point.albedo = surface.reflection.albedo;
-            lit_point.gloss = surface.reflection.gloss;
-            lit_point.exponent = surface.reflection.exponent;
+            lit_point.highlight = surface.reflection.highlight;
             lit_point.region = hit.name;
             out.push_back(lit_point);
         }
