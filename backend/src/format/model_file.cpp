@@ -159,6 +159,8 @@ constexpr std::array<ModelFormat, 4> kFormats{{
     {".glb", read_gltf_files, write_glb_file},
     {".gltf", read_gltf_files, nullptr},
 }};
+static_assert(std::all_of(kFormats.begin(), kFormats.end(),
+                          [](const ModelFormat& format) { return format.read != nullptr; }));
 
 /// ".obj, .ply and .glb"
 std::string endings(bool written) {
