@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/part_tree.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lodestone::geometry {
+
+PartTree::PartTree(const Mesh& mesh) : order_(mesh.triangles.size()) {
+    if (order_.empty())
+        return;
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::vector<Box3> boxes(order_.size());
+    for (size_t i = 0; i < order_.size(); ++i) {
+        for (int corner = 0; corner < 3; ++corner)
+            boxes[i].add(glm::dvec3(mesh.positions[mesh.triangles[i][corner]]));
+    }
+    add(boxes, 0, static_cast<uint32_t>(order_.size()));
+}
+
+/// Adds the part of the triangles from `begin` to `end` of the order, and its halves.
+void PartTree::add(std::span<const Box3> boxes, uint32_t begin, uint32_t end) {
+    MeshPart part{{}, begin, end, 0};
+    Box3 middles;
+    for (uint32_t i = begin; i < end; ++i) {
+        part.box.add(boxes[order_[i]]);
+        middles.add(boxes[order_[i]].center());
+    }
+    const size_t at = parts_.size();
+    parts_.push_back(part);
+    if (end - begin > kFewTogether) {
+        const glm::dvec3 size = middles.size();
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+        const uint32_t half = begin + (end - begin) / 2;
+        const auto place = [&](uint32_t i) { return order_.begin() + static_cast<ptrdiff_t>(i); };
+        std::nth_element(place(begin), place(half), place(end), [&](uint32_t a, uint32_t b) {
+            return boxes[a].center()[axis] < boxes[b].center()[axis];
+        });
+        add(boxes, begin, half);
+        add(boxes, half, end);
+    }
+    parts_[at].next = static_cast<uint32_t>(parts_.size());
+}
+
+}  // namespace lodestone::geometry
