@@ -193,6 +193,8 @@ int run_povray(const CommandArguments& arguments) {
                                        {"lamps", exported.lamps},
                                        {"lights_each", exported.lights_each},
                                        {"unseen", exported.unseen},
+                                       {"left_out", exported.left_out},
+                                       {"left_out_bytes", exported.left_out_bytes},
                                        {"sky_copies", exported.sky_copies},
                                        {"shadow_rays", exported.shadow_rays},
                                        {"cut_triangles", exported.cut_triangles}}});

@@ -4,11 +4,11 @@
 #include "base/findings_file.h"
 #include "base/parallel.h"
 #include "light/sky/joined_surface.h"
+#include "povray_export/lamp/corner_rays.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_things.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -19,16 +19,15 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 8;
+constexpr uint32_t kBakeVersion = 9;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
 constexpr int kFewestMeanRays = 16;        // Taste: as kMeanRays
 constexpr double kMostMeanRays = 300'000;  // Taste: rays of all placements together
-// Distinct triangles from which on corners of the largest meshes have fewer rays each.
-// Taste: a larger value has less noise in large scenes, whose bake takes longer than their files.
-constexpr uint64_t kFullTriangles = 300'000;
-constexpr int kFewestCornerRays = 16;  // Taste: as kFullTriangles
+// The share of a mesh's triangles from which on all count as seen.
+// Taste: a larger value casts fewer rays now, and all of them for the next picture.
+constexpr double kMostSeen = 0.6;
 // The steps of a factor.
 // Taste: fine enough to keep means, coarse enough that rounding does not make other files.
 constexpr double kFactorSteps = 256;
@@ -76,7 +75,9 @@ private:
         const Representation* representation = nullptr;
         const SkyThing* placed = nullptr;          // null: alone
         const Representation* original = nullptr;  // the finest level; null: it is that
-        std::shared_ptr<const light::SkyShares> found;
+        /// By triangle, 1: any of the things shows it. Empty: all count as shown.
+        std::vector<uint8_t> seen;
+        std::shared_ptr<const light::SkyShares> found;  // of as many or fewer until it is baked
     };
     /// A request for the means of all placements of one finest level, or of one stand-in.
     struct WantedMeans {
@@ -107,14 +108,18 @@ private:
         means_of_.resize(all_.things().size(), {nullptr, 0});
         for (size_t i = 0; i < all_.things().size(); ++i) {
             const SkyThing& thing = all_.things()[i];
-            if (all_.skipped(thing))
+            if (all_.skipped(thing) || (options_.needs != nullptr && !options_.needs->seen(i)))
                 continue;
             const bool once = all_.in_place(thing);
             if (thing.representation->summary.kind == Kind::Mesh)
                 shares_of_[i] = want_shares(thing, once);
+            if (shares_of_[i] != nullptr)
+                note_seen(i, *shares_of_[i]);
             if (!once && !thing.moves)
                 want_means(i);
         }
+        for (auto& [key, wanted] : wanted_shares_)
+            find_shares(key, wanted);
         for (uint32_t i = 0; i < numbers_.size(); ++i) {
             const auto wanted =
                 wanted_means_.find({all_.finest_of(all_.leaves()[i]).summary.hash, false});
@@ -143,15 +148,39 @@ private:
         wanted.placed = once ? &thing : nullptr;
         if (all_.finest_of(thing).summary.hash != thing.representation->summary.hash)
             wanted.original = &all_.finest_of(thing);
+        wanted.seen.assign(thing.representation->summary.cost.triangles, 0);
+        return &wanted;
+    }
+
+    /// Adds what the picture shows of a thing.
+    void note_seen(size_t i, WantedShares& wanted) const {
+        const std::span<const uint8_t> needs =
+            options_.needs != nullptr ? options_.needs->triangles(i) : std::span<const uint8_t>{};
+        if (needs.size() != wanted.seen.size())
+            wanted.seen.clear();
+        for (size_t k = 0; k < wanted.seen.size(); ++k) {
+            if ((needs[k] & light::kSeen) != 0)
+                wanted.seen[k] = 1;
+        }
+    }
+
+    /// Finds what was kept, or lists what is to be found: the shares of what the picture shows, and
+    /// once another picture shows more those of all, so that many pictures do not begin anew.
+    void find_shares(Hash key, WantedShares& wanted) {
+        const auto count = std::count(wanted.seen.begin(), wanted.seen.end(), uint8_t{1});
+        if (static_cast<double>(count) > kMostSeen * static_cast<double>(wanted.seen.size()))
+            wanted.seen.clear();
         if (const auto bytes = bakes_.find(key)) {
             auto found =
-                light::SkyShares::of_bytes(*bytes, thing.representation->summary.cost.triangles);
-            if (found && fits(*thing.representation, *found))
+                light::SkyShares::of_bytes(*bytes, wanted.representation->summary.cost.triangles);
+            if (found && fits(*wanted.representation, *found))
                 wanted.found = std::make_shared<const light::SkyShares>(std::move(*found));
         }
-        if (!wanted.found)
-            missing_.emplace_back(key, &wanted);
-        return &wanted;
+        if (wanted.found && light::covers(*wanted.found, wanted.seen))
+            return;
+        if (wanted.found)
+            wanted.seen.clear();
+        missing_.emplace_back(key, &wanted);
     }
 
     /// The means are those of all placements of the finest level, so that grades do not depend on
@@ -225,7 +254,7 @@ private:
         light::SkySurfaces surfaces(model_);
         surfaces.add(all, job_);
         const light::SkyScene scene(model_, surfaces, occluders, job_);
-        BakeProgress progress(job_, work_of_bake());
+        SharedProgress progress(job_, work_of_bake());
         try {
             bake_shares(surfaces, scene, progress);
             bake_means(surfaces, scene, progress);
@@ -236,25 +265,13 @@ private:
         keep();
     }
 
-    /// The bar of a bake, which may be moved from any thread.
-    class BakeProgress {
-    public:
-        BakeProgress(const Job& job, uint64_t all) : job_(job), all_(all) {}
-        void add(uint64_t work) {
-            const uint64_t done = done_ += work;
-            job_.progress(static_cast<double>(done) / static_cast<double>(all_));
-        }
-
-    private:
-        const Job& job_;
-        uint64_t all_;
-        std::atomic<uint64_t> done_{0};
-    };
-
     /// The rays of a bake, about: two triangles have about one corner.
     uint64_t work_of(const WantedShares& wanted) const {
         const uint64_t triangles = wanted.representation->summary.cost.triangles;
-        return 1 + static_cast<uint64_t>(rays_.of(triangles)) * triangles / 2;
+        const auto seen =
+            static_cast<uint64_t>(std::count(wanted.seen.begin(), wanted.seen.end(), uint8_t{1}));
+        return 1 + static_cast<uint64_t>(rays_.of(triangles)) *
+                       (wanted.seen.empty() ? triangles : seen) / 2;
     }
     uint64_t work_of_bake() const {
         uint64_t work = 1;
@@ -270,7 +287,7 @@ private:
     }
 
     void bake_shares(const light::SkySurfaces& surfaces, const light::SkyScene& scene,
-                     BakeProgress& progress) {
+                     SharedProgress& progress) {
         parallel_for(missing_.size(), [&](size_t i) {
             WantedShares& wanted = *missing_[i].second;
             if (stands_in(wanted))
@@ -299,6 +316,8 @@ private:
             surfaces.of(*wanted.representation), {}, nullptr, 0, rays, 0, options_.rays};
         request.error = wanted.representation->summary.max_error;
         request.original = original;
+        request.seen = wanted.seen;
+        request.known = wanted.found.get();
         if (wanted.placed != nullptr) {
             request.world = wanted.placed->world;
             request.around = &scene;
@@ -319,7 +338,7 @@ private:
     }
 
     void bake_means(const light::SkySurfaces& surfaces, const light::SkyScene& scene,
-                    BakeProgress& progress) {
+                    SharedProgress& progress) {
         const int rays = mean_rays();
         for (WantedMeans* wanted : missing_means_) {
             std::vector<light::SkyMeans> found(wanted->places.size());
@@ -377,7 +396,11 @@ private:
             light->shares = shares_of_[i]->found;
             light->factor = means != nullptr ? stepped(means->ratios[number]) : 1;
             const Hash key = key_of(all_.things()[i], shares_of_[i]->placed != nullptr);
-            light->hash = Hasher().value(key).value(light->factor).result();
+            light->hash = Hasher()
+                              .value(key)
+                              .value(light->factor)
+                              .array(std::span<const uint8_t>(light->shares->seen))
+                              .result();
             if (means == nullptr)
                 means_[i] = light->shares->mean;
             lights_[i] = std::move(light);
@@ -422,28 +445,6 @@ private:
 };
 
 }  // namespace
-
-CornerRays::CornerRays(int rays, std::vector<uint64_t> triangles) : rays_(rays), most_(kInfinity) {
-    // The others have the rays that small meshes do not need.
-    std::sort(triangles.begin(), triangles.end());
-    double left = static_cast<double>(kFullTriangles) * rays;
-    for (size_t i = 0; i < triangles.size(); ++i) {
-        const double each = left / static_cast<double>(triangles.size() - i);
-        const double wanted = static_cast<double>(triangles[i]) * rays;
-        if (wanted > each) {
-            most_ = each;
-            return;
-        }
-        left -= wanted;
-    }
-}
-
-int CornerRays::of(uint64_t triangles) const {
-    int rays = rays_;
-    while (rays / 2 >= kFewestCornerRays && static_cast<double>(triangles) * rays > most_)
-        rays /= 2;  // so that a thing more changes the rays of few others
-    return rays;
-}
 
 double share_of_grade(uint8_t grade) {
     const double root = static_cast<double>(grade) / (kSkyGrades - 1);

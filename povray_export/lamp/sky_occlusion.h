@@ -6,6 +6,7 @@
 #include "base/job.h"
 #include "choose/cut.h"
 #include "light/sky/sky_visibility.h"
+#include "povray_export/occurrence/picture_needs.h"
 
 #include <filesystem>
 #include <functional>
@@ -36,20 +37,6 @@ struct SkyLight {
 };
 using SkyLightPtr = std::shared_ptr<const SkyLight>;
 
-/// The rays of each corner of a mesh by its triangles. Where all distinct meshes of a scene have
-/// many triangles together, the largest ones have fewer rays, half of `rays` or a quarter ..., so
-/// that all rays stay about as many; small ones, which are the large faces, have all of them.
-class CornerRays {
-public:
-    /// `triangles`: of each distinct mesh of the scene, in any order.
-    CornerRays(int rays, std::vector<uint64_t> triangles);
-    int of(uint64_t triangles) const;
-
-private:
-    int rays_;
-    double most_;  // rays times triangles of one mesh
-};
-
 /// The choices for sky occlusion.
 struct SkyOcclusionOptions {
     int rays = 128;  // that tell the share of a corner, of a scene that is not large
@@ -57,6 +44,9 @@ struct SkyOcclusionOptions {
     /// Taste: a larger value shades larger scenes, for minutes and gigabytes.
     uint64_t most_triangles = 6'000'000;
     std::filesystem::path file;  // where bakes are kept; "": nowhere
+    /// The needs of the picture: the sky's light is not found on things that it does not show.
+    /// Null: it shows all.
+    const PictureNeeds* needs = nullptr;
     /// Makes the finest level of everything resident; asked for only where something is to be
     /// found that was not kept.
     std::function<void()> load_finest;

@@ -55,17 +55,19 @@ void CutPlan::collect_slots() {
         return;
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
         const uint16_t number = mesh_.slot(i);
-        const auto found = slots_.find(number);
-        if (found != slots_.end()) {
-            found->second.triangles.push_back(static_cast<uint32_t>(i));
-            continue;
+        auto found = slots_.find(number);
+        if (found == slots_.end()) {
+            const Material* material = material_of(number);
+            if (material == nullptr || !may_be_mask(*material))
+                continue;
+            found = slots_.try_emplace(number).first;
+            found->second.material = material;
         }
-        const Material* material = material_of(number);
-        if (material == nullptr || !may_be_mask(*material))
-            continue;
-        slots_[number].material = material;
-        slots_[number].triangles.push_back(static_cast<uint32_t>(i));
+        ++found->second.all;
+        if (!options_.shown || options_.shown->shown.at(i) != 0)
+            found->second.triangles.push_back(static_cast<uint32_t>(i));
     }
+    std::erase_if(slots_, [](const auto& slot) { return slot.second.triangles.empty(); });
 }
 
 /// The triangles of a slot by how finely they are seen.
@@ -230,7 +232,7 @@ bool CutPlan::find_outlines_of(CutSlot& slot) const {
     // The triangles of a crowd, each of which shows one picture at most: fences repeat theirs.
     // Taste: a larger value leaves the shapes of smaller bushes, for time.
     constexpr size_t kCrowd = 64;
-    slot.crowd = options_.coarse_crowds && slot.triangles.size() >= kCrowd &&
+    slot.crowd = options_.coarse_crowds && slot.all >= kCrowd &&
                  pictures <= static_cast<double>(slot.triangles.size());
     // So many blends behind each other look as a mask of them does, and POV-Ray bears no more.
     const bool deep = layers_ > kMostLayers;

@@ -24,9 +24,10 @@ struct CutBand {
 /// How a slot's mask is cut.
 struct CutSlot {
     const Material* material = nullptr;
-    std::vector<uint32_t> triangles;
-    std::vector<uint32_t> doubles;  // the other sides of some of them, which are left out
-    image::SeenTexels seen;         // by all of them
+    size_t all = 0;                   // triangles, those that are not shown too
+    std::vector<uint32_t> triangles;  // that are shown
+    std::vector<uint32_t> doubles;    // the other sides of some of them, which are left out
+    image::SeenTexels seen;           // by all of them
     std::optional<double> cutoff;
     bool crowd = false;    // of leaves, none of which matters
     bool full = false;     // nothing of it is clear: it is opaque without any cut

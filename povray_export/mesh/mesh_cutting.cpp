@@ -18,6 +18,7 @@ public:
     MeshCutter(const Model& model, const Representation& representation,
                const RepresentationOptions& options, MaskOutlines& outlines, const Job& job)
         : mesh_(representation.mesh()),
+          shown_(options.shown),
           outlines_(outlines),
           job_(job),
           plan_(model, representation, options, outlines, job) {}
@@ -41,11 +42,12 @@ public:
     CutMesh run() {
         plan_.find_slots();
         plan_.find_outlines();
-        if (plan_.slots().empty())
+        if (plan_.slots().empty() && !shown_)
             return {};
         begin();
+        out_.any = shown_ != nullptr;
         for (size_t i = 0; i < mesh_.triangles.size(); ++i) {
-            if (!plan_.slots().contains(mesh_.slot(i)))
+            if (!plan_.slots().contains(mesh_.slot(i)) && (!shown_ || shown_->shown.at(i) != 0))
                 keep(i);
         }
         for (auto& [number, slot] : plan_.slots())
@@ -204,6 +206,7 @@ private:
     }
 
     const Mesh& mesh_;
+    const ShownTrianglesPtr shown_;
     MaskOutlines& outlines_;
     const Job& job_;
     CutPlan plan_;

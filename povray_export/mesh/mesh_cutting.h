@@ -11,15 +11,16 @@
 
 namespace lodestone::povray {
 
-/// A mesh with cut-out masks. What is not cut keeps its order and its vertices.
+/// A mesh with cut-out masks, as far as it is shown. What is not cut keeps its order and its
+/// vertices.
 struct CutMesh {
-    bool any = false;  // false: nothing was cut, and the rest is empty
+    bool any = false;  // false: nothing was cut or left out, and the rest is empty
     Mesh mesh;
     std::vector<uint32_t> sources;  // the triangle that each triangle is of
     std::vector<uint8_t> opaque;    // by slot, 1: what is left has no alpha
 };
 
-/// The mesh of a representation with the masks among its materials cut out: those whose alpha is a
+/// The mesh of a representation, as far as it is `shown`, with the masks among its materials cut out: those whose alpha is a
 /// mask where the mesh shows it (MaskCount::is_mask()), those that are clipped by a cutoff, and
 /// blends of which a ray meets more than POV-Ray bears. Positions, normals, texture coordinates and
 /// colors of new corners are interpolated. Where they are no mask, painted clear, or would become

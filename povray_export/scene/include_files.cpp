@@ -68,7 +68,7 @@ int exponent_of(double texel) {
 }  // namespace
 
 size_t IncludeFiles::add(const Representation& representation, const RepresentationOptions& options,
-                         double outline) {
+                         double outline, std::span<const uint8_t> needed) {
     const auto [at, fresh] = known_.try_emplace(file_hash(representation, options), files_.size());
     const int step = outline_step(outline);
     if (fresh) {
@@ -79,9 +79,13 @@ size_t IncludeFiles::add(const Representation& representation, const Representat
             include.options.outline = step;
         include.pictured = options.textures && shows(representation, options, textured);
     }
-    std::optional<int>& least = files_[at->second].options.outline;
+    IncludeFile& include = files_[at->second];
+    std::optional<int>& least = include.options.outline;
     if (least)
         least = std::min(*least, step);
+    // Glass is a body, of which rays need all sides.
+    include.needed.add(
+        options.textures && !bends_light(representation) ? needed : std::span<const uint8_t>{});
     return at->second;
 }
 
@@ -130,6 +134,7 @@ void IncludeFiles::merge() {
             continue;
         files_[i].same = at->second;
         note_texel(at->second, files_[i].texel);
+        files_[at->second].needed.add(files_[i].needed);
     }
 }
 
@@ -177,6 +182,7 @@ void IncludeFiles::join_shadows() {
         if (at == seen.end())
             continue;
         include.same = at->second;
+        files_[at->second].needed.add(include.needed);
         std::optional<int>& least = files_[at->second].options.outline;
         if (least && include.options.outline)
             least = std::min(*least, *include.options.outline);
@@ -212,6 +218,10 @@ void IncludeFiles::name(uint64_t budget, uint64_t used, const Job& job) {
             include.options.outline = outline_step(0);
     });
     merge();
+    for (IncludeFile& include : files_) {
+        if (!include.same)
+            include.options.shown = include.needed.shown();
+    }
     parallel_for(files_.size(), [&](size_t i) {
         IncludeFile& include = files_[i];
         if (include.same || !include.options.outline)
@@ -320,14 +330,18 @@ void IncludeFiles::add_to(ExportReport& report) const {
     report.written += pictures.written;
 }
 
+bool IncludeFiles::bends_light(const Representation& representation) const {
+    return std::any_of(representation.materials.begin(), representation.materials.end(),
+                       [&](uint32_t material) {
+                           return material < model_.materials.size() &&
+                                  refraction_of(model_.materials[material]) > 0;
+                       });
+}
+
 bool IncludeFiles::refracts() const {
-    for (const IncludeFile& include : files_) {
-        for (const uint32_t material : include.representation->materials) {
-            if (material < model_.materials.size() && refraction_of(model_.materials[material]) > 0)
-                return true;
-        }
-    }
-    return false;
+    return std::any_of(files_.begin(), files_.end(), [&](const IncludeFile& include) {
+        return bends_light(*include.representation);
+    });
 }
 
 }  // namespace lodestone::povray

@@ -24,6 +24,7 @@ struct IncludeFile {
     uint64_t cut_triangles = 0;         // about what its masks become
     bool pictured = false;              // true: it shows pictures, as fine as they are seen
     double texel = std::numeric_limits<double>::infinity();  // at its nearest use
+    NeededTriangles needed = {};                             // by all its uses
     uint64_t bytes = 0;
     double cpu_s = 0;
     bool written = false;
@@ -45,9 +46,10 @@ public:
 
     /// Adds a representation and returns the index of its file; copies share one. Where it shows
     /// masks their outlines may be off by `outline` metres of its own frame, at the nearest copy:
-    /// a file for far ones, too, would be more text than it saves.
+    /// a file for far ones, too, would be more text than it saves. `needed`: a byte for each
+    /// triangle of a mesh, 0 where the picture does not need it for this copy; empty: all.
     size_t add(const Representation& representation, const RepresentationOptions& options,
-               double outline);
+               double outline, std::span<const uint8_t> needed = {});
     /// Whether parts of the file may be as coarse as is seen there: it shows masks or pictures, and
     /// nothing but its look was asked for.
     bool varies(size_t index) const;
@@ -84,6 +86,8 @@ private:
     CutForecast forecast(Hash name, const IncludeFile& include, const Job& job);
     uint64_t triangles() const;
     void limit_cut(uint64_t most);
+    /// Whether any material of a representation bends light.
+    bool bends_light(const Representation& representation) const;
     /// Whether a mesh with texture coordinates shows a material that `is` so.
     bool shows(const Representation& representation, const RepresentationOptions& options,
                bool (*is)(const Material&)) const;

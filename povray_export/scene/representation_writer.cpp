@@ -76,10 +76,12 @@ public:
             if (!split)
                 fail(Status::Internal, "the sky's light on a mesh is that on another mesh");
             Representation lit = representation_;
-            lit.payload = std::make_shared<const Mesh>(std::move(*split));
-            return textured_text(lit);
+            lit.payload = std::make_shared<const Mesh>(std::move(split->mesh));
+            RepresentationOptions options = options_;
+            options.shown = shown_parts(options_.shown, split->sources);
+            return textured_text(lit, options);
         }
-        return textured_text(representation_);
+        return textured_text(representation_, options_);
     }
 
     std::string operator()(const Solid& solid) const {
@@ -134,10 +136,23 @@ private:
         return out + '\n';
     }
 
-    std::string textured_text(const Representation& representation) const {
+    /// The parts that are shown of a mesh whose triangles are parts of these.
+    static ShownTrianglesPtr shown_parts(const ShownTrianglesPtr& shown,
+                                         std::span<const uint32_t> sources) {
+        if (!shown)
+            return nullptr;
+        ShownTriangles out;
+        out.shown.reserve(sources.size());
+        for (const uint32_t source : sources)
+            out.shown.push_back(shown->shown.at(source));
+        return std::make_shared<const ShownTriangles>(std::move(out));
+    }
+
+    std::string textured_text(const Representation& representation,
+                              const RepresentationOptions& options) const {
         const Mesh& mesh = representation.mesh();
-        const CutMesh cut = cut_masks(model_, representation, options_, outlines_, job_);
-        const MeshTextures textures(model_, representation, cut, options_, pictures_, job_);
+        const CutMesh cut = cut_masks(model_, representation, options, outlines_, job_);
+        const MeshTextures textures(model_, representation, cut, options, pictures_, job_);
         std::string left_out = textures.bumps_left_out() ? kBumpsLeftOut : "";
         left_out += layers_line(cut.any ? cut.mesh : mesh, cut);
         return mesh_text(cut.any ? cut.mesh : mesh, &textures, identifier_, job_,
@@ -184,6 +199,8 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
         hasher.text("bands").value(options.bands->hash());
     if (options.most_cut)
         hasher.text("most cut").value(*options.most_cut);
+    if (options.shown)
+        hasher.text("shown").value(options.shown->hash);
     if (options.sky)
         hasher.text("sky").value(options.sky->hash);
     if (options.few_textures)

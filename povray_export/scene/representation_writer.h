@@ -7,6 +7,7 @@
 #include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/mesh/detail_bands.h"
 #include "povray_export/mesh/mask_outlines.h"
+#include "povray_export/mesh/shown_triangles.h"
 #include "povray_export/texture/picture_writer.h"
 
 #include <optional>
@@ -30,7 +31,8 @@ struct RepresentationOptions {
     std::optional<int> most_cut = {};
     /// Outlines of crowds of leaves may be coarser than that, where they would have too many corners.
     bool coarse_crowds = true;
-    SkyLightPtr sky = {};  // the sky's light on it; null: all of it
+    ShownTrianglesPtr shown = {};  // of a mesh; null: all of it
+    SkyLightPtr sky = {};          // the sky's light on it; null: all of it
     /// True: lamps of groups light it, for which POV-Ray casts shadow rays anew for each texture that
     /// a point has. So it has one where it can: without a layer of gloss, and with one share of the
     /// sky a triangle.

@@ -11,15 +11,16 @@
 #include "povray_export/lamp/scene_lights.h"
 #include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/mesh/pixel_field.h"
+#include "povray_export/occurrence/clear_surfaces.h"
+#include "povray_export/occurrence/occurrence_look.h"
+#include "povray_export/occurrence/occurrence_text.h"
+#include "povray_export/occurrence/picture_needs.h"
+#include "povray_export/occurrence/ray_class_uses.h"
 #include "povray_export/scene/camera_writer.h"
-#include "povray_export/scene/clear_surfaces.h"
 #include "povray_export/scene/include_files.h"
 #include "povray_export/scene/invertible_transform.h"
 #include "povray_export/scene/magnification.h"
-#include "povray_export/scene/occurrence_look.h"
-#include "povray_export/scene/occurrence_text.h"
 #include "povray_export/scene/povray_number.h"
-#include "povray_export/scene/ray_class_uses.h"
 #include "povray_export/scene/render_settings.h"
 #include "povray_export/scene/scene_head.h"
 #include "povray_export/texture/surface_finish.h"
@@ -43,17 +44,6 @@ constexpr double kUnseen = 0.25;
 /// The share of the progress bar for the sky's light, where it is not known yet.
 /// Taste: it takes about as long as files do, or more.
 constexpr double kBakePart = 0.5;
-
-struct OccurrenceUse {
-    uint32_t node;
-    uint32_t lod;
-    size_t position;  // in cut.chosen
-    size_t file;      // index of the include file
-    Affine world;
-    RayMask hidden;        // ray classes that do not see it
-    RayMask in_place = 0;  // Not 0: in place of what the camera sees, for these classes only
-    std::optional<glm::dvec3> dull = {};  // shown in this color alone
-};
 
 class SceneWriter {
 public:
@@ -82,6 +72,7 @@ public:
         make_folders();
         if (!options_.covered_only)
             sky_ = write_sky(view_world(), sky_sampling(), options_.folder, problems_);
+        find_needs();
         find_sky_light();
         collect();
         const double before_files = thread_cpu_seconds();
@@ -125,6 +116,20 @@ private:
         return lit() ? options_.rays : std::span<const choose::RayCut>{};
     }
 
+    /// Gathered light comes from what is not seen, too.
+    void find_needs() {
+        if (!lit() || shading_.bounces > 0)
+            return;
+        std::vector<Light> lights = sky_.lights;
+        lights.insert(lights.end(), model_.lights.begin(), model_.lights.end());
+        const double thread_start = thread_cpu_seconds();
+        const double process_start = cpu_seconds();
+        needs_.find(model_, cut_, view_, lights, job_);
+        report_.left_out_bytes = needs_.bytes_left_out();
+        // Other threads helped; this one is counted with all it does.
+        report_.cpu_s += cpu_seconds() - process_start - (thread_cpu_seconds() - thread_start);
+    }
+
     /// Gathered light shadows the sky by itself; POV-Ray ignores ambient then.
     void find_sky_light() {
         if (!lit() || shading_.bounces > 0 || shading_.sky_rays <= 0 ||
@@ -136,6 +141,7 @@ private:
         wanted.rays = shading_.sky_rays;
         wanted.file = (options_.bakes.empty() ? options_.folder : options_.bakes) / kFile;
         wanted.load_finest = options_.load_finest;
+        wanted.needs = &needs_;
         const double thread_start = thread_cpu_seconds();
         const double process_start = cpu_seconds();
         sky_light_.emplace(model_, cut_, wanted, problems_, job_.part(0, kBakePart));
@@ -147,8 +153,8 @@ private:
         const bool softened =
             shading_.area_samples > 1 && shading_.shadow_error <= view_.pixel_error;
         for (const OwnUse& own : own_uses(model_, cut_, rays(), softened))
-            add_use({own.node, own.lod, 0, 0, own.world, own.hidden, own.in_place}, own.textures,
-                    sky_light_ ? sky_light_->mean_of_node(own.node) : nullptr);
+            add_use({own.node, own.lod, kNoPosition, 0, own.world, own.hidden, own.in_place},
+                    own.textures, sky_light_ ? sky_light_->mean_of_node(own.node) : nullptr);
     }
 
     /// Hides representations from classes that meet something else in their place, which must be
@@ -185,8 +191,9 @@ private:
         }
         const Bound bound = transformed(representation.summary.bound, use.world);
         const double pixel = pixels_.at(bound) / enlarged(use);
+        const bool cut = use.position != kNoPosition;
         const bool shadows = textures && lit() && shading_.bounces == 0 && use.in_place == 0 &&
-                             pixels_.only_shadows(bound);
+                             ((cut && !needs_.seen(use.position)) || pixels_.only_shadows(bound));
         use.file = includes_.add(
             representation,
             {.textures = textures,
@@ -195,7 +202,7 @@ private:
              .sky = textures && !shadows ? sky : nullptr,
              .few_textures = textures && plans_lights() && report_.lamps >= light::kManyLamps,
              .only_shadows = shadows},
-            outline_of(pixel));
+            outline_of(pixel), cut ? needs_.triangles(use.position) : std::span<const uint8_t>{});
         uses_.push_back(use);
         if (includes_.at(use.file).pictured)
             includes_.note_texel(use.file, shading_.texture_error * pixel);
@@ -218,6 +225,10 @@ private:
                 continue;
             if (nobody[index] != 0)
                 continue;
+            if (needs_.left_out(position)) {
+                ++report_.left_out;
+                continue;
+            }
             add_use({index, node.lod, position, 0, cut_.world(node), node.hidden},
                     !options_.false_color, sky_light_ ? sky_light_->of(position) : nullptr);
             // Gathering rays would otherwise look through a lamp, at what it lights behind itself.
@@ -225,7 +236,7 @@ private:
                 shading_.bounces > 0 ? without_glow(model_, representation, node.hidden)
                                      : std::nullopt;
             if (dull)
-                add_use({index, node.lod, position, 0, cut_.world(node),
+                add_use({index, node.lod, kNoPosition, 0, cut_.world(node),
                          kAllRays & static_cast<RayMask>(~kRadiosityRays), kRadiosityRays, dull},
                         false, nullptr);
         }
@@ -384,30 +395,13 @@ private:
     /// Appends an object, or its part `within` a box (world frame).
     void append_object(std::string& out, const OccurrenceUse& use, double times,
                        const std::optional<Box3>& within = {}) const {
-        out += "object{";
-        out += includes_.at(use.file).identifier;
-        out += ' ';
+        std::optional<glm::dvec3> flat;
         if (options_.false_color) {
             const Kind kind = includes_.at(use.file).representation->summary.kind;
-            append_flat_texture(out, options_.colors.empty() ? color_of(kind, use.lod)
-                                                             : options_.colors[use.position]);
-            out += ' ';
+            flat =
+                options_.colors.empty() ? color_of(kind, use.lod) : options_.colors[use.position];
         }
-        if (use.dull) {
-            out += "texture{pigment{";
-            append_rgb(out, *use.dull);
-            out += "} finish{ambient 0 emission 0 diffuse 1}} ";
-        }
-        append_matrix(out, magnified(use.world, times));
-        append_hidden(out, use.hidden);
-        if (within) {
-            out += " clipped_by{box{";
-            append_vector(out, within->low * times, 15);
-            out += ',';
-            append_vector(out, within->high * times, 15);
-            out += "}}";
-        }
-        out += "} // ";
+        append_occurrence(out, includes_.at(use.file).identifier, use, flat, times, within);
         append_name(out, model_, cut_, use.node);
         out += ", LOD ";
         append_count(out, use.lod);
@@ -473,6 +467,7 @@ private:
     const Job& job_;
     const Shading shading_;
     const PixelField pixels_;
+    PictureNeeds needs_;
     IncludeFiles includes_;
     std::vector<OccurrenceUse> uses_;
     ExportReport report_;

@@ -52,9 +52,11 @@ struct ExportReport {
     uint64_t files = 0;    // files of this scene, found again or written
     uint64_t written = 0;  // files not found again
     uint64_t representations = 0;
-    uint64_t occurrences = 0;  // objects in the scene
-    uint64_t unseen = 0;       // objects that the camera does not see, but some other rays
-    uint64_t lamps = 0;        // lights but suns
+    uint64_t occurrences = 0;     // objects in the scene
+    uint64_t left_out = 0;        // chosen things that the picture neither shows nor has shadows of
+    uint64_t left_out_bytes = 0;  // of the cut's in POV-Ray, for these and for parts of others
+    uint64_t unseen = 0;          // objects that the camera does not see, but some other rays
+    uint64_t lamps = 0;           // lights but suns
     double lights_each = 0;   // lamps, and lights for several, that light a seen point, in the mean
     double shadow_rays = 0;   // to suns and lamps from a seen point, in the mean, about
     uint64_t sky_copies = 0;  // representations more, for copies under other parts of the sky

@@ -208,6 +208,7 @@ TEST(IncludeFiles, WhatCastsShadowsAloneHadALook) {
     const ObjectIndex behind = builder.mesh(ball, {painted});
     builder.place_at(seen, {0, 0, 0});
     builder.place_at(behind, {0, 0, 40});
+    builder.model.lights = {scenes::sun(1)};
     View view = scenes::above();
     view.pixel_error = 1;
     const auto text_of = [&](OffScreen off_screen, const char* name) {
@@ -224,7 +225,7 @@ TEST(IncludeFiles, WhatCastsShadowsAloneHadALook) {
     const std::string shadows = text_of(OffScreen::Reflected, "shadows");
     EXPECT_EQ(shadows.find("normal_vectors"), std::string::npos);
     EXPECT_NE(shadows.find("image_map"), std::string::npos);  // of what is seen
-    builder.place_at(behind, {2, 0, 0});
+    builder.place_at(behind, {1.5, 0, 0});
     // Then it has its look where it is seen, and no second file without.
     const std::string both = text_of(OffScreen::Reflected, "both");
     EXPECT_NE(both.find("normal_vectors"), std::string::npos);

@@ -448,3 +448,30 @@ TEST(PovrayRenderMasks, CutOutCardsLookAsTheirTextures) {
     EXPECT_NEAR(mean[0] / count, mean[1] / count, 0.003);
     EXPECT_GT(mean[0] / count, 0.1);
 }
+
+TEST(MeshCutting, WhatIsNotShownIsLeftOut) {
+    // A card with a mask and one without, of which one triangle each is shown.
+    Builder builder;
+    Mesh mesh = card();
+    append(mesh, card(), Affine{glm::dmat3(1.0), {2, 0, 0}});
+    mesh.slots = {0, 0, 1, 1};
+    const ObjectIndex object =
+        builder.mesh(mesh, {builder.material(leaf(disk())), builder.matte(glm::dvec3(0.5))});
+    MaskOutlines outlines;
+    const auto found = [&](std::vector<uint8_t> shown) {
+        RepresentationOptions options;
+        options.shown = std::make_shared<const ShownTriangles>(ShownTriangles{shown, 1});
+        return cut_masks(builder.model, builder.model.objects[object].representations[0], options,
+                         outlines, {});
+    };
+    const CutMesh half = found({1, 0, 0, 1});
+    ASSERT_TRUE(half.any);
+    EXPECT_NEAR(surface_area(half.mesh), kPi * 0.09 / 2 + 0.5, 0.002);
+    EXPECT_EQ(std::count(half.sources.begin(), half.sources.end(), 3u), 1);
+    for (const uint32_t source : half.sources)
+        EXPECT_TRUE(source == 0 || source == 3) << source;
+    const CutMesh plain = found({0, 0, 1, 1});  // nothing to cut
+    ASSERT_TRUE(plain.any);
+    EXPECT_EQ(plain.sources, (std::vector<uint32_t>{2, 3}));
+    EXPECT_TRUE(found({0, 0, 0, 0}).mesh.triangles.empty());
+}

@@ -458,19 +458,6 @@ TEST_F(SkyOcclusionScenes, AProblemTellsHowMuchIsTooMuch) {
     EXPECT_EQ(problems.size(), 1u);
 }
 
-TEST_F(SkyOcclusionScenes, LargeScenesHaveFewerRaysForEachCorner) {
-    EXPECT_EQ(CornerRays(128, {}).of(1'000'000), 128);
-    EXPECT_EQ(CornerRays(128, {300'000}).of(300'000), 128);
-    EXPECT_EQ(CornerRays(128, {600'000}).of(600'000), 64);
-    EXPECT_EQ(CornerRays(128, {1'000'000'000}).of(1'000'000'000), 16);
-    EXPECT_EQ(CornerRays(4, {1'000'000'000}).of(1'000'000'000), 4);
-    // Small meshes keep theirs, and leave the rest to the large ones.
-    const CornerRays uneven(128, {1'000'000, 1'000, 100'000, 1'000'000});
-    EXPECT_EQ(uneven.of(1'000), 128);
-    EXPECT_EQ(uneven.of(1'000'000), 16);
-    EXPECT_EQ(uneven.of(100'000), 64);
-}
-
 TEST_F(SkyOcclusionScenes, WhatMovesHidesTheSkyFromItselfAlone) {
     const ObjectIndex floor = builder.mesh(shapes::quad(4, 4));
     const ObjectIndex box = builder.mesh(shapes::box({-1, -1, .2}, {1, 1, 1}));

@@ -60,7 +60,7 @@ class Cost(unittest.TestCase):
         blurred = cost_model.predict(replace(WORK, blurred=True)).trace_cpu_s
         self.assertAlmostEqual(blurred, sharp * 45 / WORK.samples)  # both at the usual antialiasing
         summary = SimpleNamespace(bytes=1, triangles=1)
-        exported = SimpleNamespace(cut_triangles=0, shadow_rays=1.0)
+        exported = SimpleNamespace(cut_triangles=0, shadow_rays=1.0, left_out_bytes=0)
         quality = quality_tree.quality(1.0)
         for camera, expected in (
             (CAMERA, True),
@@ -77,7 +77,8 @@ class Cost(unittest.TestCase):
         summary = SimpleNamespace(bytes=1000, triangles=10)
 
         def work(**more):
-            exported = SimpleNamespace(**{"cut_triangles": 0, "shadow_rays": 0.0, **more})
+            known = {"cut_triangles": 0, "shadow_rays": 0.0, "left_out_bytes": 0}
+            exported = SimpleNamespace(**{**known, **more})
             return cost_model.Work.of(summary, view, exported, Antialias.FINAL, 1, quality)
 
         leaves = work(cut_triangles=90)
@@ -85,6 +86,15 @@ class Cost(unittest.TestCase):
         self.assertEqual(leaves.bytes, 1000 + int(90 * CostModel().triangle_bytes))
         ratio = cost_model.predict(work(shadow_rays=10.0)).trace_cpu_s
         self.assertAlmostEqual(ratio / cost_model.predict(work()).trace_cpu_s, 4.0)
+
+    def test_memory_of_what_is_left_out_was_expected(self):
+        view = SimpleNamespace(camera=CAMERA, width=4, height=3, border=(0, 0, 0, 0))
+        summary = SimpleNamespace(bytes=1000, triangles=10)
+        for left_out, expected in ((0, 1000), (700, 300), (2000, 0)):
+            exported = SimpleNamespace(cut_triangles=0, shadow_rays=0.0, left_out_bytes=left_out)
+            quality = quality_tree.quality(1.0)
+            work = cost_model.Work.of(summary, view, exported, Antialias.FINAL, 1, quality)
+            self.assertEqual(work.bytes, expected)
 
     def test_the_same_picture_again_is_predicted_exactly(self):
         measured = SimpleNamespace(parse_cpu_s=9.0, trace_cpu_s=4.0, peak_bytes=400_000_000)

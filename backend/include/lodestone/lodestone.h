@@ -1168,6 +1168,10 @@ typedef struct lds_export_report {
     double lights_each; /* lights, of one lamp or standing for several, per point of the picture, on
                            average */
     uint64_t unseen;    /* occurrences that the camera does not see, but some class of rays meets */
+    uint64_t left_out; /* occurrences of the cut that are not written, for the picture neither shows
+                           them nor their shadows; only where the view's off_screen is not FULL */
+    uint64_t left_out_bytes; /* of POV-Ray's memory as the cut counts it, for these and for parts of
+                                meshes, about */
     uint64_t sky_copies; /* representations written once more, for copies that see another share of
                             the sky */
     uint64_t cut_triangles; /* about how many triangles masks that are cut out become, beyond those

@@ -67,4 +67,21 @@ private:
     double end_ = 1;
 };
 
+/// The bar of work that several threads do together.
+class SharedProgress {
+public:
+    /// `all`: the whole work, in any unit, above 0.
+    SharedProgress(const Job& job, uint64_t all) : job_(job), all_(all) {}
+    /// Adds work that is done; from any thread.
+    void add(uint64_t work) {
+        const uint64_t done = done_ += work;
+        job_.progress(static_cast<double>(done) / static_cast<double>(all_));
+    }
+
+private:
+    const Job& job_;
+    uint64_t all_;
+    std::atomic<uint64_t> done_{0};
+};
+
 }  // namespace lodestone

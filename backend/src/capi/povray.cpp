@@ -164,6 +164,8 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.lamps = report.lamps;
         out.lights_each = report.lights_each;
         out.unseen = report.unseen;
+        out.left_out = report.left_out;
+        out.left_out_bytes = report.left_out_bytes;
         out.sky_copies = report.sky_copies;
         out.shadow_rays = report.shadow_rays;
         out.cut_triangles = report.cut_triangles;

@@ -151,23 +151,10 @@ std::vector<LitPoint> LitScene::followed(SightRay ray) const {
         const DrawnThing& lit = drawn_[hit.name];
         const Mesh& mesh = *shapes_[shape_of_[hit.name]].mesh;
         const LitSurface surface = surface_of(lit, mesh.slot(hit.triangle));
-        const glm::dmat3 turn = glm::transpose(glm::inverse(lit.world.linear));
-        glm::dvec3 flat = glm::normalize(turn * area_vector(mesh, hit.triangle));
-        if (!(glm::dot(flat, flat) > 0))
+        const SightNormals normals =
+            sight_normals(mesh, lit.world, hit.triangle, hit.u, hit.v, ray.direction);
+        if (!normals.any)
             return out;
-        if (glm::dot(flat, ray.direction) > 0)
-            flat = -flat;
-        glm::dvec3 normal = flat;
-        if (!mesh.normals.empty()) {
-            const Triangle& corners = mesh.triangles[hit.triangle];
-            const glm::dvec3 smooth =
-                turn * ((1 - hit.u - hit.v) * glm::dvec3(mesh.normals[corners[0]]) +
-                        hit.u * glm::dvec3(mesh.normals[corners[1]]) +
-                        hit.v * glm::dvec3(mesh.normals[corners[2]]));
-            const double length = glm::length(smooth);
-            if (length > 0)
-                normal = smooth / (glm::dot(smooth, flat) < 0 ? -length : length);
-        }
         ray.z += hit.t;
         const double aside = std::max(least_, kRelative * ray.z);
         const glm::dvec3 point = ray.origin + ray.direction * hit.t;
@@ -176,8 +163,8 @@ std::vector<LitPoint> LitScene::followed(SightRay ray) const {
         if (shown) {
             LitPoint lit_point;
             lit_point.position = point;
-            lit_point.aside = flat * aside;
-            lit_point.normal = normal;
+            lit_point.aside = normals.flat * aside;
+            lit_point.normal = normals.smooth;
             lit_point.to_eye = -ray.direction;
             lit_point.albedo = surface.reflection.albedo;
             lit_point.highlight = surface.reflection.highlight;
@@ -185,28 +172,18 @@ std::vector<LitPoint> LitScene::followed(SightRay ray) const {
             out.push_back(lit_point);
         }
         if (shown && surface.reflection.mirror && !surface.see_through) {
-            ray.direction = ray.direction - 2 * glm::dot(ray.direction, normal) * normal;
-            if (!(glm::dot(ray.direction, flat) > 0))
+            ray.direction = mirror_direction(ray.direction, normals.smooth);
+            if (!(glm::dot(ray.direction, normals.flat) > 0))
                 return out;
-            ray.origin = point + flat * aside;
+            ray.origin = point + normals.flat * aside;
             mirrored = true;
         } else if (!shown || surface.see_through) {
-            ray.origin = point - flat * aside;
+            ray.origin = point - normals.flat * aside;
         } else {
             return out;
         }
     }
     return out;
-}
-
-LitScene::SightRay LitScene::ray_at(const View& view, double x, double y) {
-    const Camera& camera = view.camera;
-    const glm::dvec3 aside = (x - 0.5) * camera.right + (0.5 - y) * camera.up;
-    SightRay ray;
-    ray.origin = camera.orthographic ? camera.position + aside : camera.position;
-    ray.direction =
-        glm::normalize(camera.orthographic ? camera.direction : camera.direction + aside);
-    return ray;
 }
 
 /// Continues from the last point, as a matt surface hands on light.

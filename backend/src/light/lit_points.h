@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "light/light_cut.h"
 #include "light/light_plan.h"
+#include "light/seen/sight_ray.h"
 #include "ray/placed_scenes.h"
 
 namespace lodestone::light {
@@ -35,7 +36,7 @@ public:
     LitGrid points(const View& view, size_t count, int bounces, const Job& job) const;
     /// The points at a place of the picture (0...1 from its left, top), nearest first.
     std::vector<LitPoint> seen(const View& view, double x, double y) const {
-        return followed(ray_at(view, x, y));
+        return followed(sight_ray(view, x, y));
     }
 
     /// Sets the light that points get besides lamps: of a uniform sky, as far as they see it where
@@ -73,15 +74,8 @@ private:
         SurfaceReflection reflection;
         bool see_through = false;
     };
-    struct SightRay {
-        glm::dvec3 origin;
-        glm::dvec3 direction;
-        double z = 0;  // the length of the way to its origin
-    };
-
     LitSurface surface_of(const DrawnThing& lit, uint16_t slot) const;
     SceneShape shape_of(const DrawnThing& lit);
-    static SightRay ray_at(const View& view, double x, double y);
     std::vector<LitPoint> followed(SightRay ray) const;
     void bounce(int times, PcgRandom& random, std::vector<LitPoint>& out) const;
 

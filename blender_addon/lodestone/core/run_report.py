@@ -69,6 +69,8 @@ def export_part(report: native.records.ExportReport) -> dict[str, Any]:
         "files": report.files,
         "written": report.written,
         "cpu_s": report.cpu_s,
+        "left_out": report.left_out,
+        "left_out_bytes": report.left_out_bytes,
         "sky_copies": report.sky_copies,
         "shadow_rays": report.shadow_rays,
         "cut_triangles": report.cut_triangles,

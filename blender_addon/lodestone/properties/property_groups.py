@@ -70,7 +70,7 @@ ANTIALIAS = (
     ("REFERENCE", "Reference", "16 samples in every pixel: slow, for comparing", 2),
 )
 OFF_SCREEN = (
-    ("FULL", "Full Detail", "As if the picture showed them", 0),
+    ("FULL", "Full Detail", "As if the picture showed them; nothing is left out", 0),
     (
         "REFLECTED",
         "As Shadows and Mirrors Need",

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "light/sky/sky_scene.h"
+#include "light/sky/sky_shares.h"
 #include "measure/visible/sobol_points.h"
 
 #include <array>
@@ -27,6 +28,11 @@ struct SkyRequest {
     /// places of it that the level shows, for it lies behind some of its boards and before others.
     /// Null: it is the finest one, or there is none.
     const SkySurface* original = nullptr;
+    /// By triangle of the surface, 1: it is seen. The others have few rays, and are not split.
+    /// Empty: all are seen.
+    std::span<const uint8_t> seen = {};
+    /// The shares that were found for fewer seen triangles, whose splits are kept. Null: none were.
+    const SkyShares* known = nullptr;
 };
 
 /// The answers of the rays of one triangle.

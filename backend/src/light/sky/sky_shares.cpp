@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 namespace lodestone::light {
 namespace {
@@ -50,7 +51,10 @@ double share_of_byte(uint8_t byte) {
 std::string SkyShares::bytes() const {
     std::string out;
     append_bytes(out, mean);
+    append_bytes(out, static_cast<uint32_t>(seen.size()));
+    out.append(reinterpret_cast<const char*>(seen.data()), seen.size());
     append_bytes(out, static_cast<uint32_t>(splits.size()));
+    append_bytes(out, long_rounds);
     for (const std::vector<geometry::WeldedEdge>& edges : splits) {
         append_bytes(out, static_cast<uint32_t>(edges.size()));
         for (const geometry::WeldedEdge edge : edges)
@@ -64,8 +68,15 @@ std::optional<SkyShares> SkyShares::of_bytes(std::string_view bytes, size_t tria
     ByteReader reader(bytes);
     SkyShares out;
     uint32_t rounds = 0;
-    if (!reader.take(out.mean) || !(out.mean >= 0 && out.mean <= 1) || !reader.take(rounds) ||
-        rounds > 2 * kSplitRounds)
+    uint32_t told = 0;
+    if (!reader.take(out.mean) || !(out.mean >= 0 && out.mean <= 1) || !reader.take(told) ||
+        (told != 0 && told != triangles) || told > reader.rest().size())
+        return {};
+    out.seen.resize(told);
+    for (uint8_t& one : out.seen)
+        reader.take(one);
+    if (!reader.take(rounds) || rounds > kMostSplitRounds || !reader.take(out.long_rounds) ||
+        out.long_rounds > rounds)
         return {};
     for (uint32_t round = 0; round < rounds; ++round) {
         uint32_t count = 0;
@@ -86,23 +97,40 @@ std::optional<SkyShares> SkyShares::of_bytes(std::string_view bytes, size_t tria
     return out;
 }
 
+bool covers(const SkyShares& shares, std::span<const uint8_t> seen) {
+    if (shares.seen.empty())
+        return true;
+    if (seen.size() != shares.seen.size())
+        return false;
+    for (size_t i = 0; i < seen.size(); ++i) {
+        if (seen[i] != 0 && shares.seen[i] == 0)
+            return false;
+    }
+    return true;
+}
+
 bool whole(const Mesh& mesh, const SkyShares& shares) {
     return shares.splits.empty() && shares.corners.size() == 3 * mesh.triangles.size();
 }
 
-std::optional<Mesh> split_for_sky(const Mesh& mesh, const SkyShares& shares) {
+std::optional<SkySplitMesh> split_for_sky(const Mesh& mesh, const SkyShares& shares) {
     const size_t most = shares.corners.size() / 3;
     if (mesh.triangles.size() > most)
         return {};
     geometry::EdgeSplitMesh split(mesh);
+    std::vector<uint32_t> sources(mesh.triangles.size());
+    std::iota(sources.begin(), sources.end(), 0u);
     for (const std::vector<geometry::WeldedEdge>& edges : shares.splits) {
         if (split.triangles_after(edges) > most)
             return {};
-        split.split(edges);
+        std::vector<uint32_t> parents = split.split(edges);
+        for (uint32_t& parent : parents)
+            parent = sources[parent];
+        sources = std::move(parents);
     }
     if (split.mesh().triangles.size() != most)
         return {};
-    return split.take();
+    return SkySplitMesh{split.take(), std::move(sources)};
 }
 
 }  // namespace lodestone::light

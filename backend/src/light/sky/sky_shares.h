@@ -14,6 +14,9 @@ namespace lodestone::light {
 /// Rounds of splits that follow the shares.
 /// Taste: each halves an edge, so a larger value follows finer shade with more triangles.
 inline constexpr int kSplitRounds = 4;
+/// The rounds of splits of one surface at most: of long edges, and two times by the shares.
+/// Law: three times kSplitRounds.
+inline constexpr int kMostSplitRounds = 3 * kSplitRounds;
 
 /// The steps of a share in SkyShares::corners: a share is (byte / kShareSteps)^2, for the eye sees
 /// steps of dark surfaces better.
@@ -26,8 +29,11 @@ double share_of_byte(uint8_t byte);
 struct SkyShares {
     /// The edges at which triangles are split, round by round: large ones, where the share varies.
     std::vector<std::vector<geometry::WeldedEdge>> splits;
+    uint32_t long_rounds = 0;      // of the splits, the first: those of long edges
     std::vector<uint8_t> corners;  // 3 a triangle of the split mesh
     double mean = 1;               // of the whole surface
+    /// By triangle of the mesh that was split, 1: its corners have all their rays. Empty: all have.
+    std::vector<uint8_t> seen;
 
     /// The bytes as which the shares are kept, and the shares of such bytes for a mesh of so many
     /// triangles: none where they are damaged.
@@ -35,10 +41,17 @@ struct SkyShares {
     static std::optional<SkyShares> of_bytes(std::string_view bytes, size_t triangles);
 };
 
+/// Whether all triangles that are seen (a byte not 0; empty: all are) have all their rays.
+bool covers(const SkyShares& shares, std::span<const uint8_t> seen);
 /// Whether the shares are those of the mesh as it is, without splits.
 bool whole(const Mesh& mesh, const SkyShares& shares);
+/// A mesh with its splits, and the triangle that each of its triangles is a part of.
+struct SkySplitMesh {
+    Mesh mesh;
+    std::vector<uint32_t> sources;
+};
 /// The mesh with its splits; the same one for equal arguments. None where the shares are those of
 /// another mesh.
-std::optional<Mesh> split_for_sky(const Mesh& mesh, const SkyShares& shares);
+std::optional<SkySplitMesh> split_for_sky(const Mesh& mesh, const SkyShares& shares);
 
 }  // namespace lodestone::light

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <unordered_map>
 
 namespace lodestone::light {
@@ -40,6 +41,9 @@ constexpr double kLongEnough = 0.7;
 // Taste: more tell better where to split.
 constexpr int kFewestRays = 8;
 constexpr int kFewestPart = 8;  // Taste: as kFewestRays, the other way round
+// The rays of a triangle that is not seen, for the mean of all.
+// Taste: the fewest, for rays are cast in pairs.
+constexpr int kUnseenRays = 2;
 // The steps of a unit normal's coordinates within which flat triangles face the same way.
 // Taste: a larger value smooths less over folds.
 constexpr double kNormalSteps = 32;
@@ -52,7 +56,11 @@ public:
           job_(job),
           sampler_(request),
           split_(*request.surface.mesh),
-          most_(split_.mesh().triangles.size() + request.splits) {}
+          most_(split_.mesh().triangles.size() + request.splits),
+          sources_(split_.mesh().triangles.size()) {
+        std::iota(sources_.begin(), sources_.end(), 0u);
+        find_thorough();
+    }
 
     SkyShares run() {
         const bool is_closed = closed(split_.mesh());
@@ -61,13 +69,20 @@ public:
         const bool may_split =
             request_.splits > 0 && (split_.mesh().triangles.size() > kFew || !is_closed);
         const double longest = sampler_.size() / kPartsOfMesh;
-        if (may_split)
+        const SkyShares* known = request_.known;
+        const size_t long_rounds = known != nullptr ? known->long_rounds : 0;
+        for (size_t round = 0; round < long_rounds; ++round)
+            split(known->splits.at(round));
+        if (known == nullptr && may_split)
             split_long(longest);
+        long_rounds_ = splits_.size();
         shares_.resize(split_.mesh().triangles.size());
         std::vector<uint32_t> all(shares_.size());
         for (uint32_t i = 0; i < all.size(); ++i)
             all[i] = i;
         sample(all);
+        for (size_t round = long_rounds; known != nullptr && round < known->splits.size(); ++round)
+            split_and_sample(known->splits[round]);
         for (int round = 0; may_split && round < kSplitRounds; ++round) {
             if (!split_steps(longest / kPartsOfLongest))
                 break;
@@ -76,6 +91,45 @@ public:
     }
 
 private:
+    /// Finds the triangles that have all rays: what is seen, and what shares a corner with that.
+    void find_thorough() {
+        if (request_.seen.empty())
+            return;
+        const Mesh& mesh = split_.mesh();
+        std::vector<uint8_t> corners(mesh.positions.size(), 0);
+        for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+            for (int corner = 0; request_.seen[i] != 0 && corner < 3; ++corner)
+                corners[split_.welded()[mesh.triangles[i][corner]]] = 1;
+        }
+        for (const Triangle& t : mesh.triangles) {
+            const auto near = [&](int corner) { return corners[split_.welded()[t[corner]]] != 0; };
+            thorough_.push_back(near(0) || near(1) || near(2) ? 1 : 0);
+        }
+    }
+    /// Whether a triangle of the split mesh has all rays.
+    bool thorough(size_t triangle) const {
+        return thorough_.empty() || thorough_[sources_[triangle]] != 0;
+    }
+    /// Whether a triangle may be split by its share: it is seen, and was not when others were.
+    bool may_split(size_t triangle) const {
+        const uint32_t source = sources_[triangle];
+        const bool seen = request_.seen.empty() || request_.seen[source] != 0;
+        const SkyShares* known = request_.known;
+        return seen && (known == nullptr || (!known->seen.empty() && known->seen[source] == 0));
+    }
+
+    /// Splits edges; returns for each triangle the one that it is a part of.
+    std::vector<uint32_t> split(std::vector<geometry::WeldedEdge> edges) {
+        std::vector<uint32_t> parents = split_.split(edges);
+        std::vector<uint32_t> sources;
+        sources.reserve(parents.size());
+        for (const uint32_t parent : parents)
+            sources.push_back(sources_[parent]);
+        sources_ = std::move(sources);
+        splits_.push_back(std::move(edges));
+        return parents;
+    }
+
     double length(size_t triangle, int corner) const {
         const Mesh& mesh = split_.mesh();
         const Triangle& t = mesh.triangles[triangle];
@@ -107,8 +161,7 @@ private:
             if (edges.empty() || split_.mesh().triangles.size() + 2 * edges.size() >
                                      (most_ + request_.surface.mesh->triangles.size()) / 2)
                 return;
-            split_.split(edges);
-            splits_.push_back(std::move(edges));
+            split(std::move(edges));
         }
     }
 
@@ -133,7 +186,7 @@ private:
         const int wanted = rays_of_corner(triangle) / static_cast<int>(std::max(fewest, 1u));
         // Two are the fewest, for rays are cast in pairs.
         const int least = std::clamp(request_.rays / kFewestPart, 2, kFewestRays);
-        return std::max(wanted, least);
+        return thorough(triangle) ? std::max(wanted, least) : kUnseenRays;
     }
 
     void sample(const std::vector<uint32_t>& triangles) {
@@ -161,7 +214,7 @@ private:
         std::vector<std::pair<geometry::WeldedEdge, uint32_t>> sides;
         sides.reserve(3 * mesh.triangles.size());
         for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-            if (!opaque(i))
+            if (!opaque(i) || !thorough(i))
                 continue;
             for (int corner = 0; corner < 3; ++corner)
                 sides.emplace_back(split_.edge(i, corner), i);
@@ -184,7 +237,7 @@ private:
         }
         std::vector<std::pair<double, uint32_t>> wanted;
         for (uint32_t i = 0; i < steps.size(); ++i) {
-            const double longest = steps[i] > 0 ? longest_edge(i) : 0;
+            const double longest = steps[i] > 0 && may_split(i) ? longest_edge(i) : 0;
             if (longest > least)
                 wanted.emplace_back(-steps[i] * longest, i);
         }
@@ -203,8 +256,13 @@ private:
         }
         std::sort(edges.begin(), edges.end());
         edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-        const std::vector<uint32_t> parents = split_.split(edges);
-        splits_.push_back(std::move(edges));
+        split_and_sample(std::move(edges));
+        return true;
+    }
+
+    /// Splits edges, and finds the shares of the parts.
+    void split_and_sample(std::vector<geometry::WeldedEdge> edges) {
+        const std::vector<uint32_t> parents = split(std::move(edges));
         std::vector<uint32_t> fresh;
         std::vector<TriangleShares> shares(parents.size());
         for (uint32_t i = 0; i < parents.size(); ++i) {
@@ -217,7 +275,6 @@ private:
         }
         shares_ = std::move(shares);
         sample(fresh);
-        return true;
     }
 
     /// Corners share a number where they are at one place and face the same way.
@@ -254,6 +311,8 @@ private:
         const Mesh& mesh = split_.mesh();
         SkyShares out;
         out.splits = std::move(splits_);
+        out.long_rounds = static_cast<uint32_t>(long_rounds_);
+        out.seen.assign(request_.seen.begin(), request_.seen.end());
         std::unordered_map<CornerKey, uint32_t, CornerKeyHash> known;
         known.reserve(mesh.triangles.size());
         std::vector<uint32_t> groups(3 * mesh.triangles.size());
@@ -319,9 +378,12 @@ private:
     SkySampler sampler_;
     geometry::EdgeSplitMesh split_;
     size_t most_;
+    std::vector<uint32_t> sources_;  // by triangle: that of the surface which it is a part of
+    std::vector<uint8_t> thorough_;  // by triangle of the surface; empty: all are
     std::vector<TriangleShares> shares_;
     std::vector<uint32_t> around_;  // triangles at each welded vertex
     std::vector<std::vector<geometry::WeldedEdge>> splits_;
+    size_t long_rounds_ = 0;  // of them: those of long edges
 };
 
 }  // namespace

@@ -70,8 +70,8 @@ class Ratios:
 
 @dataclass(frozen=True)
 class Work:
-    """The work of a picture: bytes and triangles as the cut counts them; `pixels` are those
-    drawn."""
+    """The work of a picture: bytes and triangles as the cut counts them, less the bytes that the
+    picture does not need; `pixels` are those drawn."""
 
     bytes: int
     triangles: int
@@ -114,7 +114,8 @@ class Work:
         drawn = width * height
         masks = exported.cut_triangles
         grown = int(masks * native.CostModel().triangle_bytes)
-        sums = (summary.bytes + grown, summary.triangles + masks, drawn)
+        written = max(0, summary.bytes - exported.left_out_bytes)
+        sums = (written + grown, summary.triangles + masks, drawn)
         rays = gathering(quality.bounces, quality.bounce_rays, quality.bounce_error)
         blurred = view.camera.aperture > 0.0 and not view.camera.orthographic
         return cls(

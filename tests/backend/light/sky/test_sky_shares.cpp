@@ -36,13 +36,14 @@ TEST(SkyShares, ASplitMeshHasAShareForEachCorner) {
     const Mesh quad = shapes::quad(2, 1);
     const auto split = split_for_sky(quad, split_quad());
     ASSERT_TRUE(split);
-    EXPECT_EQ(split->triangles.size(), 4u);
+    EXPECT_EQ(split->mesh.triangles.size(), 4u);
+    EXPECT_EQ(split->sources, (std::vector<uint32_t>{0, 0, 1, 1}));
     EXPECT_FALSE(whole(quad, split_quad()));
     SkyShares plain;
     plain.corners.assign(6, 255);
     EXPECT_TRUE(whole(quad, plain));
     EXPECT_FALSE(whole(shapes::cube(), plain));
-    EXPECT_EQ(split_for_sky(quad, plain)->triangles.size(), 2u);
+    EXPECT_EQ(split_for_sky(quad, plain)->mesh.triangles.size(), 2u);
 }
 
 TEST(SkyShares, AnotherMeshIsRefused) {
@@ -69,7 +70,7 @@ TEST(SkyShares, BytesThatCannotBeAreRefused) {
     falling.splits = {{9, 8}};
     EXPECT_FALSE(SkyShares::of_bytes(falling.bytes(), 2));
     SkyShares many = good;
-    many.splits.assign(2 * kSplitRounds + 1, {});
+    many.splits.assign(kMostSplitRounds + 1, {});
     EXPECT_FALSE(SkyShares::of_bytes(many.bytes(), 2));
     SkyShares odd = good;
     odd.corners.pop_back();
@@ -77,4 +78,23 @@ TEST(SkyShares, BytesThatCannotBeAreRefused) {
     SkyShares more = good;
     more.splits.clear();
     EXPECT_FALSE(SkyShares::of_bytes(more.bytes(), 2));
+}
+
+TEST(SkyShares, TheyCoverWhatHasAllItsRays) {
+    SkyShares shares;
+    const std::vector<uint8_t> first = {1, 0};
+    const std::vector<uint8_t> all = {1, 1};
+    EXPECT_TRUE(covers(shares, {}));
+    EXPECT_TRUE(covers(shares, first));
+    shares.seen = first;
+    EXPECT_TRUE(covers(shares, first));
+    EXPECT_FALSE(covers(shares, all));
+    EXPECT_FALSE(covers(shares, {}));  // that is all
+    EXPECT_TRUE(covers(shares, std::vector<uint8_t>{0, 0}));
+    EXPECT_FALSE(covers(shares, std::vector<uint8_t>{0, 0, 0}));
+    shares.corners.assign(6, 255);
+    const auto back = SkyShares::of_bytes(shares.bytes(), 2);
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->seen, first);
+    EXPECT_FALSE(SkyShares::of_bytes(shares.bytes(), 3));
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards how much of the sky surfaces see, by answers that are known.
+#include "backend/light/sky/sky_places.h"
 #include "base/parallel.h"
-#include "light/sky/sky_visibility.h"
-#include "povray/povray_scenes.h"
 #include "scenes/damaged_files.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -11,22 +10,11 @@
 
 using namespace lodestone;
 using namespace lodestone::light;
-using povray::scenes::Builder;
 
 namespace {
 
-class SkyVisibility : public testing::Test {
+class SkyVisibility : public SkyPlaces {
 protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
-    }
-
-    const Representation& finest(ObjectIndex object) const {
-        return builder.model.objects[object].representations[0];
-    }
-
     /// The shares of the first of the things, all of which hide the sky.
     SkyShares shares_of_first(const std::vector<std::pair<ObjectIndex, Affine>>& things,
                               size_t splits = 0) {
@@ -41,22 +29,6 @@ protected:
             {place.surfaces.of(finest(things[0].first)), things[0].second, &*place.scene, 0, 64, 0},
             2048);
     }
-
-    struct SkyPlace {
-        SkyPlace(SkyVisibility& test, const std::vector<std::pair<ObjectIndex, Affine>>& things)
-            : surfaces(test.builder.model) {
-            std::vector<const Representation*> all;
-            for (const auto& [object, world] : things) {
-                occluders.push_back({&test.finest(object), world});
-                all.push_back(&test.finest(object));
-            }
-            surfaces.add(all, {});
-            scene.emplace(test.builder.model, surfaces, occluders, Job{});
-        }
-        SkySurfaces surfaces;
-        std::vector<SkyOccluder> occluders;
-        std::optional<SkyScene> scene;
-    };
 
     /// The mean of a level of something that hides the sky alone.
     double mean_of_level(const Mesh& mesh, ObjectIndex original, double error) {
@@ -76,8 +48,6 @@ protected:
         surfaces.add(all, {});
         return sky_shares({surfaces.of(finest(object)), {}, nullptr, 0, 64, 0}, {});
     }
-
-    Builder builder;
 };
 
 Affine moved(const glm::dvec3& offset) {
@@ -314,14 +284,15 @@ TEST_F(SkyVisibility, LargeTrianglesAreSplitWhereItVaries) {
     ASSERT_FALSE(fine.splits.empty());
     const auto split = split_for_sky(finest(ground).mesh(), fine);
     ASSERT_TRUE(split);
-    EXPECT_LE(split->triangles.size(), 1100u);
-    EXPECT_NEAR(surface_area(*split), 1600, 0.01);
+    const Mesh& mesh = split->mesh;
+    EXPECT_LE(mesh.triangles.size(), 1100u);
+    EXPECT_NEAR(surface_area(mesh), 1600, 0.01);
     // Far corners see nearly all, those at the wall about a half.
     double far = 0;
     double near = 1;
-    for (size_t i = 0; i < split->triangles.size(); ++i) {
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
         for (int corner = 0; corner < 3; ++corner) {
-            const glm::dvec3 at(split->positions[split->triangles[i][corner]]);
+            const glm::dvec3 at(mesh.positions[mesh.triangles[i][corner]]);
             const double away = std::max(std::abs(at.x - 20), std::abs(at.y - 20));
             const double share = share_of_byte(fine.corners[3 * i + static_cast<size_t>(corner)]);
             if (away > 15)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/scene/clear_surfaces.h"
+#include "povray_export/occurrence/clear_surfaces.h"
 
 #include "povray_export/mesh/clear_layers.h"
+#include "povray_export/occurrence/occurrence_text.h"
 #include "povray_export/run/povray_runner.h"
-#include "povray_export/scene/occurrence_text.h"
 #include "povray_export/scene/povray_number.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/scene/ray_class_uses.h"
+#include "povray_export/occurrence/ray_class_uses.h"
 
 namespace lodestone::povray {
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/scene/occurrence_text.h"
+#include "povray_export/occurrence/occurrence_text.h"
+
+#include "povray_export/scene/magnification.h"
+#include "povray_export/scene/povray_number.h"
+#include "povray_export/texture/surface_finish.h"
 
 #include <array>
 #include <string_view>
@@ -30,6 +34,33 @@ const std::string& name_of_node(const Model& model, const choose::Cut& cut, uint
 }
 
 }  // namespace
+
+void append_occurrence(std::string& out, const std::string& identifier, const OccurrenceUse& use,
+                       const std::optional<glm::dvec3>& flat, double times,
+                       const std::optional<Box3>& within) {
+    out += "object{";
+    out += identifier;
+    out += ' ';
+    if (flat) {
+        append_flat_texture(out, *flat);
+        out += ' ';
+    }
+    if (use.dull) {
+        out += "texture{pigment{";
+        append_rgb(out, *use.dull);
+        out += "} finish{ambient 0 emission 0 diffuse 1}} ";
+    }
+    append_matrix(out, magnified(use.world, times));
+    append_hidden(out, use.hidden);
+    if (within) {
+        out += " clipped_by{box{";
+        append_vector(out, within->low * times, 15);
+        out += ',';
+        append_vector(out, within->high * times, 15);
+        out += "}}";
+    }
+    out += "} // ";
+}
 
 void append_hidden(std::string& out, RayMask hidden) {
     for (size_t i = 0; i < kRayClasses.size(); ++i) {

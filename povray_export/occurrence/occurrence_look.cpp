@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "povray_export/scene/occurrence_look.h"
+#include "povray_export/occurrence/occurrence_look.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,0 +1,472 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "light/seen/seen_parts.h"
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "choose/criterion.h"
+#include "choose/off_screen.h"
+#include "choose/view_pyramid.h"
+#include "geometry/part_tree.h"
+#include "light/light_arrival.h"
+#include "light/seen/sight_scene.h"
+#include "measure/visible/convex_bound.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <optional>
+
+namespace lodestone::light {
+namespace {
+
+// The rays through a pixel, and through all pixels together.
+// Taste: more find smaller things behind gaps, for 3 us each.
+constexpr double kRaysOfPixel = 2;
+constexpr double kMostRays = 1 << 20;  // Taste: as kRaysOfPixel
+// The width of a part, in distances between rays: a part of which an eighth is seen is met.
+// Taste: a larger value leaves out less, a smaller one misses more.
+constexpr double kPartWidth = 8;
+// The rays toward a part that no ray through the picture met, and those along suns.
+// Taste: more find parts of which less is seen.
+constexpr int kAims = 8;
+constexpr int kShadowAims = 4;  // Taste: as kAims
+// The mirrors in a row that a ray follows.
+// Taste: more find things deeper in mirrors.
+constexpr int kMostMirrors = 4;
+// The suns that a ray looks for from each place; of more, so many by chance.
+// Taste: more tell better what throws faint shadows.
+constexpr size_t kSunsOfPlace = 2;
+// The tests of things against lamps, beyond which everything throws shadows.
+// Taste: a second or so.
+constexpr double kMostLampTests = 4e6;
+
+/// A sun whose shadows show.
+struct ShadowSun {
+    const Light* light = nullptr;
+    glm::dvec3 way{0, 0, 1};  // to it; has length 1
+    double radius = 0;        // of its disk at distance 1
+};
+
+/// The least of some sizes, from any thread.
+class LeastSize {
+public:
+    void note(double size) {
+        double known = least_.load(std::memory_order_relaxed);
+        while (size < known &&
+               !least_.compare_exchange_weak(known, size, std::memory_order_relaxed)) {
+        }
+    }
+    double value() const { return least_.load(std::memory_order_relaxed); }
+
+private:
+    std::atomic<double> least_{kInfinity};
+};
+
+class SeenSearch {
+public:
+    SeenSearch(const Model& model, const RendererSurfaces& renderer,
+               std::span<const DrawnThing> drawn, const View& view, std::span<const Light> lights,
+               const Job& job)
+        : model_(model),
+          drawn_(drawn),
+          view_(view),
+          job_(job),
+          scene_(model, renderer, drawn, job),
+          pyramid_(view),
+          to_frame_(
+              glm::inverse(glm::dmat3(view.camera.right, view.camera.up, view.camera.direction))),
+          shadow_pixels_(drawn.size()) {
+        first_.push_back(0);
+        for (uint32_t i = 0; i < drawn.size(); ++i)
+            first_.push_back(first_.back() + scene_.mesh(i).triangles.size());
+        needs_.resize(first_.back(), 0);
+        spacing_ = std::sqrt(static_cast<double>(view.width) * view.height / SeenParts::rays(view));
+        for (const Light& light : lights) {
+            if (!choose::casts_shadows(light))
+                continue;
+            if (light.kind != LightKind::Sun)
+                lamps_.push_back(&light);
+            else if (shines_as_sun(light))
+                suns_.push_back({&light, -glm::normalize(light.direction),
+                                 std::tan(std::clamp(light.angle / 2, 0.0, 1.5))});
+        }
+    }
+
+    /// False: not everything that is needed can be told.
+    bool run() {
+        look();
+        if (bends_)
+            return false;
+        make_trees();
+        spread(kSeen);
+        aim();
+        if (bends_)
+            return false;
+        spread(kShades);
+        aim_shadows();
+        shade_by_lamps();
+        return true;
+    }
+
+    std::vector<size_t> first() { return std::move(first_); }
+    std::vector<uint8_t> needs() { return std::move(needs_); }
+
+private:
+    /// The needs of a triangle, which any thread may add to.
+    std::atomic_ref<uint8_t> needs_of(uint32_t drawn, uint32_t triangle) {
+        return std::atomic_ref<uint8_t>(needs_[first_[drawn] + triangle]);
+    }
+    void note(uint32_t drawn, uint32_t triangle, uint8_t need) {
+        needs_of(drawn, triangle).fetch_or(need, std::memory_order_relaxed);
+    }
+
+    /// Sends rays through all of the picture, one in each cell of a grid.
+    void look() {
+        const auto columns = static_cast<size_t>(std::ceil(view_.width / spacing_));
+        const auto rows = static_cast<size_t>(std::ceil(view_.height / spacing_));
+        parallel_for(rows, [&](size_t row) {
+            job_.check();
+            const ray::FlushDenormals fast;
+            PcgRandom random(3, row);
+            for (size_t column = 0; column < columns; ++column) {
+                const double x =
+                    (static_cast<double>(column) + random.uniform()) / static_cast<double>(columns);
+                const double y =
+                    (static_cast<double>(row) + random.uniform()) / static_cast<double>(rows);
+                follow(sight_ray(view_, x, y), random);
+            }
+        });
+    }
+
+    /// Notes what a ray meets, in mirrors too.
+    void follow(const SightRay& ray, PcgRandom& random) {
+        SightWalk walk{ray.origin, ray.direction};
+        SightCrossing at;
+        int mirrors = 0;
+        while (scene_.step(walk, at)) {
+            note(at.drawn, at.triangle, kSeen);
+            if (at.bends)
+                bends_ = true;
+            const SightNormals normals =
+                sight_normals(scene_.mesh(at.drawn), drawn_[at.drawn].world, at.triangle, at.u,
+                              at.v, walk.direction);
+            if (normals.any)
+                shade(at, normals, random);
+            if (!at.ends)
+                continue;
+            if (!at.mirrors || !normals.any || mirrors++ == kMostMirrors)
+                return;
+            walk.direction = mirror_direction(walk.direction, normals.smooth);
+            if (!(glm::dot(walk.direction, normals.flat) > 0))
+                return;
+            walk.origin = at.point + scene_.aside(at.way) * normals.flat;
+            walk.way = at.way;
+            walk.far = kInfinity;
+            walk.sees = kReflectionRays;
+        }
+    }
+
+    /// Notes what hides suns from a place that is seen.
+    void shade(const SightCrossing& place, const SightNormals& normals, PcgRandom& random) {
+        const size_t count = std::min(suns_.size(), kSunsOfPlace);
+        const double pixel = choose::pixel_size(view_, place.way);
+        for (size_t i = 0; i < count; ++i) {
+            const ShadowSun& sun =
+                suns_[suns_.size() == count
+                          ? i
+                          : std::min(static_cast<size_t>(random.uniform() *
+                                                         static_cast<double>(suns_.size())),
+                                     suns_.size() - 1)];
+            SightWalk walk;
+            walk.direction = place_on(sun, random);
+            const double side = glm::dot(walk.direction, normals.flat) < 0 ? -1 : 1;
+            if (side < 0 && !(glm::dot(walk.direction, normals.smooth) > 0))
+                continue;
+            walk.origin = place.point + side * scene_.aside(place.way) * normals.flat;
+            walk.sees = kShadowRays;
+            walk.way = place.way;
+            SightCrossing at;
+            while (scene_.step(walk, at)) {
+                note(at.drawn, at.triangle, kShades);
+                shadow_pixels_[at.drawn].note(pixel);
+                if (at.ends)
+                    break;
+            }
+        }
+    }
+
+    /// The way to a place on a sun.
+    static glm::dvec3 place_on(const ShadowSun& sun, PcgRandom& random) {
+        const double turn = 2 * kPi * random.uniform();
+        const double out = sun.radius * std::sqrt(random.uniform());
+        const glm::dvec3 u = perpendicular(sun.way);
+        const glm::dvec3 v = glm::cross(sun.way, u);
+        return glm::normalize(sun.way + out * (std::cos(turn) * u + std::sin(turn) * v));
+    }
+
+    void make_trees() {
+        std::vector<uint32_t> firsts(scene_.shapes(), ~uint32_t{0});
+        for (uint32_t i = 0; i < drawn_.size(); ++i) {
+            uint32_t& first = firsts[scene_.shape(i)];
+            first = std::min(first, i);
+        }
+        trees_.resize(firsts.size());
+        parallel_for(firsts.size(), [&](size_t shape) {
+            job_.check();
+            if (firsts[shape] < drawn_.size())
+                trees_[shape].emplace(scene_.mesh(firsts[shape]));
+        });
+    }
+
+    /// Visits the parts of a thing that are no wider than `width(bound)` metres, or not halved.
+    template <typename Width, typename Visit>
+    void visit_parts(uint32_t drawn, const Width& width, const Visit& visit) const {
+        const geometry::PartTree& tree = *trees_[scene_.shape(drawn)];
+        for (size_t i = 0; i < tree.parts().size();) {
+            const geometry::MeshPart& part = tree.parts()[i];
+            const Bound own{part.box.center(), 0.5 * glm::length(part.box.size()), part.box};
+            const Bound bound = transformed(own, drawn_[drawn].world);
+            if (!tree.leaf(i) && 2 * bound.radius > width(bound)) {
+                ++i;
+                continue;
+            }
+            visit(tree.triangles(part), bound);
+            i = part.next;
+        }
+    }
+    double seen_width(const Bound& bound) const {
+        return kPartWidth * spacing_ *
+               choose::pixel_size(view_, distance(bound, view_.camera.position));
+    }
+
+    bool any(uint32_t drawn, std::span<const uint32_t> triangles, uint8_t need) {
+        return std::any_of(triangles.begin(), triangles.end(), [&](uint32_t triangle) {
+            return (needs_of(drawn, triangle).load(std::memory_order_relaxed) & need) != 0;
+        });
+    }
+    void note_all(uint32_t drawn, std::span<const uint32_t> triangles, uint8_t need) {
+        for (const uint32_t triangle : triangles)
+            note(drawn, triangle, need);
+    }
+
+    /// Lets a part of which anything was met be needed as a whole.
+    void spread(uint8_t need) {
+        parallel_for(drawn_.size(), [&](size_t i) {
+            const auto drawn = static_cast<uint32_t>(i);
+            const double shadow = kPartWidth * spacing_ * shadow_pixels_[i].value();
+            visit_parts(
+                drawn,
+                [&](const Bound& bound) { return need == kSeen ? seen_width(bound) : shadow; },
+                [&](std::span<const uint32_t> triangles, const Bound&) {
+                    if (any(drawn, triangles, need))
+                        note_all(drawn, triangles, need);
+                });
+        });
+    }
+
+    /// The ray from the eye to a point, and the way; none to what is not in the picture.
+    std::optional<SightWalk> walk_to(const glm::dvec3& point) const {
+        const Camera& camera = view_.camera;
+        const glm::dvec3 away = point - camera.position;
+        const glm::dvec3 frame = to_frame_ * away;
+        if (!(frame.z > 0))
+            return {};
+        const double scale = camera.orthographic ? 1 : frame.z;
+        if (std::abs(frame.x) > 0.5 * scale || std::abs(frame.y) > 0.5 * scale)
+            return {};
+        SightWalk walk;
+        const glm::dvec3 way = camera.orthographic ? frame.z * camera.direction : away;
+        walk.origin = point - way;
+        walk.far = glm::length(way);
+        if (!(walk.far > 0))
+            return {};
+        walk.direction = way / walk.far;
+        return walk;
+    }
+
+    glm::dvec3 point_on(uint32_t drawn, uint32_t triangle, PcgRandom& random) const {
+        const Mesh& mesh = scene_.mesh(drawn);
+        const Triangle& t = mesh.triangles[triangle];
+        const double a = random.uniform();
+        const glm::dvec2 at = measure::uniform_in_triangle(a, random.uniform());
+        return drawn_[drawn].world((1 - at.x - at.y) * glm::dvec3(mesh.positions[t.x]) +
+                                   at.x * glm::dvec3(mesh.positions[t.y]) +
+                                   at.y * glm::dvec3(mesh.positions[t.z]));
+    }
+    static uint32_t one_of(std::span<const uint32_t> triangles, PcgRandom& random) {
+        const double at = random.uniform() * static_cast<double>(triangles.size());
+        return triangles[std::min(static_cast<size_t>(at), triangles.size() - 1)];
+    }
+
+    /// Looks at the parts that no ray through the picture met.
+    void aim() {
+        parallel_for(drawn_.size(), [&](size_t i) {
+            const auto drawn = static_cast<uint32_t>(i);
+            if ((drawn_[i].hidden & kCameraRays) != 0 || !finite(drawn_[i]))
+                return;
+            job_.check();
+            const ray::FlushDenormals fast;
+            PcgRandom random(4, i);
+            visit_parts(
+                drawn, [&](const Bound& bound) { return seen_width(bound); },
+                [&](std::span<const uint32_t> triangles, const Bound& bound) {
+                    if (pyramid_.outside(bound) || any(drawn, triangles, kSeen))
+                        return;
+                    for (int k = 0; k < kAims; ++k) {
+                        if (sees(drawn, one_of(triangles, random), random)) {
+                            note_all(drawn, triangles, kSeen);
+                            return;
+                        }
+                    }
+                });
+        });
+    }
+
+    /// Whether the eye sees a random place of a triangle, whose shadows are noted then.
+    bool sees(uint32_t drawn, uint32_t triangle, PcgRandom& random) {
+        std::optional<SightWalk> walk = walk_to(point_on(drawn, triangle, random));
+        if (!walk)
+            return false;
+        walk->far += scene_.aside(walk->far);
+        SightCrossing at;
+        while (scene_.step(*walk, at)) {
+            if (at.drawn == drawn && at.triangle == triangle) {
+                if (at.bends)
+                    bends_ = true;
+                const SightNormals normals = sight_normals(scene_.mesh(drawn), drawn_[drawn].world,
+                                                           triangle, at.u, at.v, walk->direction);
+                if (normals.any)
+                    shade(at, normals, random);
+                return true;
+            }
+            if (at.ends)
+                return false;
+        }
+        return false;
+    }
+
+    /// Looks where the shadows fall of parts that no ray to a sun met.
+    void aim_shadows() {
+        if (suns_.empty() || model_.root >= model_.objects.size())
+            return;
+        const Box3 all = model_.objects[model_.root].bound().box;
+        parallel_for(drawn_.size(), [&](size_t i) {
+            const auto drawn = static_cast<uint32_t>(i);
+            if ((drawn_[i].hidden & kShadowRays) != 0 || !finite(drawn_[i]))
+                return;
+            job_.check();
+            const ray::FlushDenormals fast;
+            PcgRandom random(5, i);
+            visit_parts(
+                drawn, [&](const Bound& bound) { return seen_width(bound); },
+                [&](std::span<const uint32_t> triangles, const Bound& bound) {
+                    if (any(drawn, triangles, kShades))
+                        return;
+                    for (size_t k = 0; k < std::min(suns_.size(), kSunsOfPlace); ++k) {
+                        if (!choose::shadow_reach(*suns_[k].light, bound, &pyramid_, all,
+                                                  view_.camera.position)
+                                 .seen)
+                            continue;
+                        for (int aim = 0; aim < kShadowAims; ++aim) {
+                            const uint32_t triangle = one_of(triangles, random);
+                            if (shows_shadow(point_on(drawn, triangle, random), suns_[k], random)) {
+                                note_all(drawn, triangles, kShades);
+                                return;
+                            }
+                        }
+                    }
+                });
+        });
+    }
+
+    /// Whether the eye sees anything that lies in the shadow of a point.
+    bool shows_shadow(const glm::dvec3& point, const ShadowSun& sun, PcgRandom& random) const {
+        SightWalk down;
+        down.direction = -place_on(sun, random);
+        const double way = glm::length(point - view_.camera.position);
+        down.origin = point + scene_.aside(way) * down.direction;
+        SightCrossing at;
+        while (scene_.step(down, at)) {
+            if (std::optional<SightWalk> walk = walk_to(at.point)) {
+                walk->far -= 2 * scene_.aside(walk->far);
+                SightCrossing before;
+                bool hidden = false;
+                while (!hidden && scene_.step(*walk, before))
+                    hidden = before.ends;
+                if (!hidden)
+                    return true;
+            }
+            if (at.ends)
+                return false;
+        }
+        return false;
+    }
+
+    /// Lets a thing be needed as a whole where its shadow by a lamp may be seen.
+    void shade_by_lamps() {
+        if (lamps_.empty())
+            return;
+        const bool many = static_cast<double>(lamps_.size()) * static_cast<double>(drawn_.size()) >
+                          kMostLampTests;
+        const Box3 all =
+            model_.root < model_.objects.size() ? model_.objects[model_.root].bound().box : Box3();
+        parallel_for(drawn_.size(), [&](size_t i) {
+            if ((drawn_[i].hidden & kShadowRays) != 0)
+                return;
+            const Bound bound =
+                transformed(drawn_[i].representation->summary.bound, drawn_[i].world);
+            const bool shades =
+                many || std::any_of(lamps_.begin(), lamps_.end(), [&](const Light* lamp) {
+                    return choose::shadow_reach(*lamp, bound, &pyramid_, all, view_.camera.position)
+                        .seen;
+                });
+            for (size_t k = first_[i]; shades && k < first_[i + 1]; ++k)
+                needs_[k] |= kShades;
+        });
+    }
+
+    static bool finite(const DrawnThing& thing) { return thing.world.finite(); }
+
+    const Model& model_;
+    std::span<const DrawnThing> drawn_;
+    const View& view_;
+    const Job& job_;
+    SightScene scene_;
+    choose::ViewPyramid pyramid_;
+    glm::dmat3 to_frame_;
+    double spacing_ = 1;  // of rays through the picture, in pixels
+    std::vector<ShadowSun> suns_;
+    std::vector<const Light*> lamps_;
+    std::vector<size_t> first_;
+    std::vector<uint8_t> needs_;
+    std::vector<LeastSize> shadow_pixels_;  // by drawn thing: of a pixel where its shadow is seen
+    std::vector<std::optional<geometry::PartTree>> trees_;  // by shape
+    std::atomic<bool> bends_{false};
+};
+
+}  // namespace
+
+double SeenParts::rays(const View& view) {
+    const double pixels = static_cast<double>(view.width) * view.height;
+    return std::max(1.0, std::min(kRaysOfPixel * pixels, kMostRays));
+}
+
+SeenParts::SeenParts(const Model& model, const RendererSurfaces& renderer,
+                     std::span<const DrawnThing> drawn, const View& view,
+                     std::span<const Light> lights, const Job& job) {
+    SeenSearch search(model, renderer, drawn, view, lights, job);
+    known_ = search.run();
+    first_ = search.first();
+    needs_ = search.needs();
+    all_.resize(drawn.size(), 0);
+    for (size_t i = 0; i < drawn.size(); ++i) {
+        for (const uint8_t need : triangles(i))
+            all_[i] |= need;
+    }
+}
+
+}  // namespace lodestone::light

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Picture needs: which choices of a cut a picture shows, or the shadows of which, and which of
+// their triangles.
+#pragma once
+
+#include "base/job.h"
+#include "choose/cut.h"
+#include "light/seen/seen_parts.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace lodestone::povray {
+
+/// The needs of one picture. Everything is needed until find() was called, and where it cannot be
+/// told or would take longer than it saves: of few triangles, of very many, with blurred depths,
+/// where the view asks for what is off screen in full.
+class PictureNeeds {
+public:
+    /// Finds what is needed; `lights`: all that throw shadows. Throws Error(Cancelled),
+    /// Error(BadFile).
+    void find(const Model& model, const choose::Cut& cut, const View& view,
+              std::span<const Light> lights, const Job& job);
+
+    /// Whether a choice (its position in cut.chosen) can be left out of the picture.
+    bool left_out(size_t position) const { return known(position) && needs(position) == 0; }
+    /// Whether it is seen, and not only its shadow.
+    bool seen(size_t position) const {
+        return !known(position) || (needs(position) & light::kSeen) != 0;
+    }
+    /// The bytes of POV-Ray's memory that are not taken for what is not needed, about.
+    uint64_t bytes_left_out() const { return bytes_left_out_; }
+    /// The needs for each triangle of its mesh, as bits of light::SeenParts; empty: all are needed.
+    std::span<const uint8_t> triangles(size_t position) const {
+        return known(position) ? parts_->triangles(drawn_[position]) : std::span<const uint8_t>{};
+    }
+
+private:
+    static constexpr uint32_t kUnknown = ~uint32_t{0};
+
+    void count_bytes(std::span<const light::DrawnThing> drawn);
+    bool known(size_t position) const { return parts_ && drawn_[position] != kUnknown; }
+    uint8_t needs(size_t position) const { return parts_->needs(drawn_[position]); }
+
+    std::optional<light::SeenParts> parts_;
+    std::vector<uint32_t> drawn_;  // by position
+    uint64_t bytes_left_out_ = 0;
+};
+
+}  // namespace lodestone::povray

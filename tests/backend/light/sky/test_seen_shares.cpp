@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards that the sky's light is found where it is seen, and is the same when more of it is.
+#include "backend/light/sky/sky_places.h"
+#include "scenes/fine_grids.h"
+
+#include <array>
+#include <map>
+
+using namespace lodestone;
+using namespace lodestone::light;
+
+using SeenShares = SkyPlaces;
+
+TEST_F(SeenShares, WhatIsNotSeenHasFewRaysAndIsNotSplit) {
+    // A ground in 8 x 8 parts, of which the half beside a wall and the other half are seen in turn.
+    const Mesh mesh = shapes::terrain(8);
+    const ObjectIndex ground = builder.mesh(mesh);
+    const ObjectIndex walls = builder.mesh(shapes::boxes(30));
+    const Affine small{glm::dmat3(0.04), {0.1, 0.4, 0}};
+    const SkyPlace place(*this, {{ground, {}}, {walls, small}});
+    std::vector<uint8_t> half;
+    for (const Triangle& t : mesh.triangles)
+        half.push_back(mesh.positions[t.x].x < 0.5f * mesh.positions.back().x ? 1 : 0);
+    const auto shares = [&](const std::vector<uint8_t>& seen, const SkyShares* known) {
+        SkyRequest request{place.surfaces.of(finest(ground)), {}, &*place.scene, 0, 64, 400};
+        request.seen = seen;
+        request.known = known;
+        return sky_shares(request, {});
+    };
+    const SkyShares first = shares(half, nullptr);
+    EXPECT_EQ(first.seen, half);
+    EXPECT_TRUE(covers(first, half));
+    const SkyShares all = shares({}, &first);
+    EXPECT_TRUE(all.seen.empty());
+    // What was split stays so, and what is seen keeps its shares but where neighbors are split now.
+    ASSERT_GE(all.splits.size(), first.splits.size());
+    EXPECT_TRUE(std::equal(first.splits.begin(), first.splits.end(), all.splits.begin()));
+    const auto before = split_for_sky(mesh, first);
+    const auto after = split_for_sky(mesh, all);
+    ASSERT_TRUE(before && after);
+    std::map<std::array<float, 9>, std::array<uint8_t, 3>> known;
+    const auto corners = [](const Mesh& split, const SkyShares& of, size_t i) {
+        std::array<float, 9> at{};
+        std::array<uint8_t, 3> bytes{};
+        for (size_t corner = 0; corner < 3; ++corner) {
+            const glm::vec3& p = split.positions[split.triangles[i][static_cast<int>(corner)]];
+            std::copy(&p.x, &p.x + 3, at.begin() + static_cast<ptrdiff_t>(3 * corner));
+            bytes[corner] = of.corners[3 * i + corner];
+        }
+        return std::pair(at, bytes);
+    };
+    for (size_t i = 0; i < before->mesh.triangles.size(); ++i) {
+        if (half[before->sources[i]] != 0)
+            known.insert(corners(before->mesh, first, i));
+    }
+    size_t same = 0;
+    for (size_t i = 0; i < after->mesh.triangles.size(); ++i) {
+        const auto [at, bytes] = corners(after->mesh, all, i);
+        const auto found = known.find(at);
+        same += found != known.end() && found->second == bytes ? 1 : 0;
+    }
+    EXPECT_GT(10 * same, 9 * known.size());
+    EXPECT_NEAR(first.mean, shares({}, nullptr).mean, 0.05);
+}
