@@ -5,6 +5,16 @@
 #include <numeric>
 
 namespace lodestone::geometry {
+namespace {
+
+/// The middle of a triangle's box; of one that has none, or that is not finite, the origin: such
+/// triangles lie in some part.
+glm::dvec3 middle_of(const Box3& box) {
+    const glm::dvec3 middle = box.center();
+    return finite(middle) ? middle : glm::dvec3(0.0);
+}
+
+}  // namespace
 
 PartTree::PartTree(const Mesh& mesh) : order_(mesh.triangles.size()) {
     if (order_.empty())
@@ -24,7 +34,7 @@ void PartTree::add(std::span<const Box3> boxes, uint32_t begin, uint32_t end) {
     Box3 middles;
     for (uint32_t i = begin; i < end; ++i) {
         part.box.add(boxes[order_[i]]);
-        middles.add(boxes[order_[i]].center());
+        middles.add(middle_of(boxes[order_[i]]));
     }
     const size_t at = parts_.size();
     parts_.push_back(part);
@@ -34,7 +44,7 @@ void PartTree::add(std::span<const Box3> boxes, uint32_t begin, uint32_t end) {
         const uint32_t half = begin + (end - begin) / 2;
         const auto place = [&](uint32_t i) { return order_.begin() + static_cast<ptrdiff_t>(i); };
         std::nth_element(place(begin), place(half), place(end), [&](uint32_t a, uint32_t b) {
-            return boxes[a].center()[axis] < boxes[b].center()[axis];
+            return middle_of(boxes[a])[axis] < middle_of(boxes[b])[axis];
         });
         add(boxes, begin, half);
         add(boxes, half, end);

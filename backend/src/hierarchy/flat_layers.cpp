@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "geometry/closest_on_triangle.h"
+#include "geometry/part_tree.h"
 #include "hierarchy/counted_error.h"
 #include "measure/visible/convex_bound.h"
 #include "measure/visible/surface_inertia.h"
@@ -13,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <span>
 
 namespace lodestone::hierarchy {
 namespace {
@@ -37,8 +40,9 @@ struct LeafSurface {
     std::shared_ptr<const Mesh> mesh;
     double width = 0;  // across, m
     bool flat = false;
-    bool asked = false;               // flat, and no environment
-    std::vector<glm::dvec3> samples;  // of its surface; made when asked for
+    bool asked = false;                       // flat, and no environment
+    std::vector<glm::dvec3> samples;          // of its surface; made when asked for
+    std::optional<geometry::PartTree> parts;  // made when asked for
 };
 
 struct PlacedLeaf {
@@ -230,15 +234,33 @@ private:
                 break;
             const glm::dvec3 point = back * (narrow.world(shape.samples[i]) - wide.world.offset);
             const Box3 at{point, point};
-            if (overlap(at, box, gap) && is_near(*shapes_[wide.object].mesh, point, gap))
+            if (overlap(at, box, gap) && is_near(shapes_[wide.object], point, gap))
                 ++near;
         }
         return wanted > 0 && near >= wanted;
     }
 
-    bool is_near(const Mesh& mesh, const glm::dvec3& point, double gap) {
-        for (const Triangle& t : mesh.triangles) {
+    /// Whether a surface comes nearer to a point than that.
+    bool is_near(LeafSurface& surface, const glm::dvec3& point, double gap) {
+        if (!surface.parts)
+            surface.parts.emplace(*surface.mesh);
+        const std::vector<geometry::MeshPart>& parts = surface.parts->parts();
+        for (size_t i = 0; i < parts.size();) {
             ++work_;
+            const bool apart = !overlap({point, point}, parts[i].box, gap);
+            if (!apart && surface.parts->leaf(i) &&
+                is_near(*surface.mesh, surface.parts->triangles(parts[i]), point, gap))
+                return true;
+            i = apart ? parts[i].next : i + 1;
+        }
+        return false;
+    }
+
+    bool is_near(const Mesh& mesh, std::span<const uint32_t> triangles, const glm::dvec3& point,
+                 double gap) {
+        for (const uint32_t triangle : triangles) {
+            ++work_;
+            const Triangle& t = mesh.triangles[triangle];
             const glm::dvec3 a(mesh.positions[t.x]);
             const glm::dvec3 b(mesh.positions[t.y]);
             const glm::dvec3 c(mesh.positions[t.z]);

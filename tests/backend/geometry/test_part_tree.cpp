@@ -4,6 +4,7 @@
 #include "scenes/small_meshes.h"
 
 #include <gtest/gtest.h>
+#include <limits>
 
 using namespace lodestone;
 using geometry::PartTree;
@@ -65,4 +66,17 @@ TEST(PartTree, TrianglesOnOnePlaceAreHalvedAllTheSame) {
     const PartTree tree(mesh);
     EXPECT_EQ(tree.parts()[0].end, mesh.triangles.size());
     EXPECT_FALSE(tree.leaf(0));
+}
+
+TEST(PartTree, PlacesThatAreNoNumbersHarmNobody) {
+    Mesh mesh = shapes::sphere(1, 3);
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(),
+                         std::numeric_limits<float>::infinity(), -1e38f, 3e38f};
+    for (size_t i = 0; i < mesh.positions.size(); i += 3)
+        mesh.positions[i][static_cast<int>(i % 3)] = bad[i / 3 % 4];
+    const PartTree tree(mesh);
+    size_t count = 0;
+    for (size_t i = 0; i < tree.parts().size(); ++i)
+        count += tree.leaf(i) ? tree.triangles(tree.parts()[i]).size() : 0;
+    EXPECT_EQ(count, mesh.triangles.size());
 }
