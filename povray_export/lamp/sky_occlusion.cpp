@@ -251,7 +251,8 @@ private:
         }
         for (const WantedMeans* wanted : missing_means_)
             all.push_back(wanted->representation);
-        light::SkySurfaces surfaces(model_);
+        light::SkySurfaces surfaces(
+            model_, options_.texels ? options_.texels : std::make_shared<image::TexelCache>());
         surfaces.add(all, job_);
         const light::SkyScene scene(model_, surfaces, occluders, job_);
         SharedProgress progress(job_, work_of_bake());

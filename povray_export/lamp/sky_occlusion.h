@@ -44,6 +44,8 @@ struct SkyOcclusionOptions {
     /// Taste: a larger value shades larger scenes, for minutes and gigabytes.
     uint64_t most_triangles = 6'000'000;
     std::filesystem::path file;  // where bakes are kept; "": nowhere
+    /// The masks of the model as far as they are decoded; null: none are.
+    std::shared_ptr<image::TexelCache> texels{};
     /// The needs of the picture: the sky's light is not found on things that it does not show.
     /// Null: it shows all.
     const PictureNeeds* needs = nullptr;

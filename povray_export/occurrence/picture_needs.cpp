@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/occurrence/picture_needs.h"
 
-#include "povray_export/lamp/renderer_surfaces.h"
 #include "povray_export/scene/camera_writer.h"
 #include "povray_export/scene/invertible_transform.h"
 #include "ray/mesh_scene.h"
@@ -22,8 +21,9 @@ constexpr uint64_t kMostTriangles = 2'000'000;
 
 }  // namespace
 
-void PictureNeeds::find(const Model& model, const choose::Cut& cut, const View& view,
-                        std::span<const Light> lights, const Job& job) {
+void PictureNeeds::find(const Model& model, const light::RendererSurfaces& renderer,
+                        const choose::Cut& cut, const View& view, std::span<const Light> lights,
+                        const Job& job) {
     if (view.modifiers.off_screen == OffScreen::Full || !(view.pixel_error > 0) ||
         has_depth_blur(view.camera) || !ray::available())
         return;
@@ -46,7 +46,7 @@ void PictureNeeds::find(const Model& model, const choose::Cut& cut, const View& 
     if (triangles > kMostTriangles ||
         kRaysOfTriangle * static_cast<double>(triangles) < light::SeenParts::rays(view))
         return;
-    parts_.emplace(model, renderer_surfaces(model), drawn, view, lights, job);
+    parts_.emplace(model, renderer, drawn, view, lights, job);
     if (parts_->known())
         count_bytes(drawn);
     else

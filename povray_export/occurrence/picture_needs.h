@@ -20,8 +20,8 @@ class PictureNeeds {
 public:
     /// Finds what is needed; `lights`: all that throw shadows. Throws Error(Cancelled),
     /// Error(BadFile).
-    void find(const Model& model, const choose::Cut& cut, const View& view,
-              std::span<const Light> lights, const Job& job);
+    void find(const Model& model, const light::RendererSurfaces& renderer, const choose::Cut& cut,
+              const View& view, std::span<const Light> lights, const Job& job);
 
     /// Whether a choice (its position in cut.chosen) can be left out of the picture.
     bool left_out(size_t position) const { return known(position) && needs(position) == 0; }

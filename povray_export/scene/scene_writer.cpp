@@ -56,6 +56,7 @@ public:
           problems_(problems),
           job_(job),
           shading_(shading_of(options, view.pixel_error)),
+          renderer_(renderer_surfaces(model)),
           pixels_(model, view),
           includes_(model, options.folder, options.bakes) {
         report_.lamps = static_cast<uint64_t>(
@@ -124,7 +125,7 @@ private:
         lights.insert(lights.end(), model_.lights.begin(), model_.lights.end());
         const double thread_start = thread_cpu_seconds();
         const double process_start = cpu_seconds();
-        needs_.find(model_, cut_, view_, lights, job_);
+        needs_.find(model_, renderer_, cut_, view_, lights, job_);
         report_.left_out_bytes = needs_.bytes_left_out();
         // Other threads helped; this one is counted with all it does.
         report_.cpu_s += cpu_seconds() - process_start - (thread_cpu_seconds() - thread_start);
@@ -142,6 +143,7 @@ private:
         wanted.file = (options_.bakes.empty() ? options_.folder : options_.bakes) / kFile;
         wanted.load_finest = options_.load_finest;
         wanted.needs = &needs_;
+        wanted.texels = renderer_.texels;
         const double thread_start = thread_cpu_seconds();
         const double process_start = cpu_seconds();
         sky_light_.emplace(model_, cut_, wanted, problems_, job_.part(0, kBakePart));
@@ -360,8 +362,8 @@ private:
         suns.insert(suns.end(), model_.lights.begin(), model_.lights.end());
         demands.suns = suns;
         demands.measured_suns = options_.antialiasing != Antialiasing::Reference;
-        light::LightPlan plan = light::plan_lights(model_, renderer_surfaces(model_), drawn, view_,
-                                                   demands, problems_, job_);
+        light::LightPlan plan =
+            light::plan_lights(model_, renderer_, drawn, view_, demands, problems_, job_);
         if (!plan.empty())
             report_.lights_each = plan.lights_each;
         name_slow_lamps(plan, problems_);
@@ -466,6 +468,7 @@ private:
     Problems& problems_;
     const Job& job_;
     const Shading shading_;
+    const light::RendererSurfaces renderer_;
     const PixelField pixels_;
     PictureNeeds needs_;
     IncludeFiles includes_;

@@ -4,9 +4,11 @@
 #pragma once
 
 #include "base/job.h"
+#include "image/decoded_texels.h"
 #include "light/lamp_grids.h"
 #include "model/model.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -23,6 +25,8 @@ struct SurfaceReflection {
 struct RendererSurfaces {
     std::vector<SurfaceReflection> reflections;  // one for each material of the model
     double tolerance = 0;  // in metres: things nearer than this cast no shadow on the surface
+    /// The masks of the model, decoded once for all who look through them. From any thread.
+    std::shared_ptr<image::TexelCache> texels = std::make_shared<image::TexelCache>();
 };
 
 /// A placed representation that is drawn.

@@ -35,6 +35,23 @@ constexpr double kBeside = 8;
 // Law: positions are known to 1e-7 of it; this is a large margin.
 constexpr double kRelative = 1e-4;
 
+// The places of a lamp that tell how much of it a point sees.
+// Law: its middle, and four around it.
+constexpr int kPlaces = 5;
+std::array<glm::dvec3, kPlaces> places_on(const Light& light, const LitPoint& point) {
+    const double extent = extent_of(light);
+    const glm::dvec3 way = light.position - point.position;
+    const double distance = glm::length(way);
+    glm::dvec3 u = light.edge_u * 0.4;
+    glm::dvec3 v = light.edge_v * 0.4;
+    if (light.kind != LightKind::Area) {
+        u = perpendicular(distance > 0 ? way / distance : glm::dvec3(0, 0, 1)) * (0.6 * extent);
+        v = distance > 0 ? glm::cross(way / distance, u) : glm::dvec3(0.0);
+    }
+    return {light.position, light.position + u + v, light.position + u - v, light.position - u + v,
+            light.position - u - v};
+}
+
 /// A clear material that hides light where it hides more than half of it, for films and clouds have
 /// no shadow with an edge.
 Material halved_alpha(Material material) {
@@ -92,13 +109,13 @@ LitScene::SceneShape LitScene::shape_of(const DrawnThing& lit) {
                                 ? halved_alpha(clear_material(model_.materials[index]))
                                 : Material{});
     shape.dimming = std::make_shared<const ray::MeshScene>(
-        mesh, std::make_shared<const ray::MeshSkin>(materials, texels_));
+        mesh, std::make_shared<const ray::MeshSkin>(materials, *texels_));
     return shape;
 }
 
 LitScene::LitScene(const Model& model, const RendererSurfaces& renderer,
                    std::span<const DrawnThing> drawn, const Job& job)
-    : model_(model), drawn_(drawn), tolerance_(renderer.tolerance) {
+    : model_(model), drawn_(drawn), texels_(renderer.texels), tolerance_(renderer.tolerance) {
     for (size_t i = 0; i < model.materials.size(); ++i)
         surfaces_.push_back({renderer.reflections[i], lets_light_through(model.materials[i])});
     surfaces_.emplace_back();
@@ -336,35 +353,33 @@ double LitScene::penumbra_from(const Light& sun, const LitPoint& point) const {
     return free ? farthest : 0;
 }
 
+bool LitScene::free(const LitPoint& point, const glm::dvec3& place, uint32_t& blocker) const {
+    const glm::dvec3 from = point.position + point.aside;
+    const glm::dvec3 way = place - from;
+    const double distance = glm::length(way);
+    // In POV-Ray, too, a thing this near to a light throws no shadow.
+    return distance <= tolerance_ ||
+           !blocking_.occluded(from, way, 1 - tolerance_ / distance, blocker);
+}
+
 double LitScene::reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const {
     if (!light.shadow && light.kind == LightKind::Point)
         return 1;
-    const glm::dvec3 from = point.position + point.aside;
-    const auto free = [&](const glm::dvec3& place) {
-        const glm::dvec3 way = place - from;
-        const double distance = glm::length(way);
-        // In POV-Ray, too, a thing this near to a light throws no shadow.
-        return distance <= tolerance_ ||
-               !blocking_.occluded(from, way, 1 - tolerance_ / distance, blocker);
-    };
-    const double extent = extent_of(light);
-    const glm::dvec3 way = light.position - point.position;
-    const double distance = glm::length(way);
-    if (extent <= kPoint * distance)
-        return free(light.position) ? 1 : 0;
-    glm::dvec3 u = light.edge_u * 0.4;
-    glm::dvec3 v = light.edge_v * 0.4;
-    if (light.kind != LightKind::Area) {
-        u = perpendicular(distance > 0 ? way / distance : glm::dvec3(0, 0, 1)) * (0.6 * extent);
-        v = distance > 0 ? glm::cross(way / distance, u) : glm::dvec3(0.0);
-    }
-    const std::array<glm::dvec3, 5> places = {light.position, light.position + u + v,
-                                              light.position + u - v, light.position - u + v,
-                                              light.position - u - v};
+    if (extent_of(light) <= kPoint * glm::length(light.position - point.position))
+        return free(point, light.position, blocker) ? 1 : 0;
     double sum = 0;
-    for (const glm::dvec3& place : places)
-        sum += free(place) ? 1 : 0;
-    return sum / static_cast<double>(places.size());
+    for (const glm::dvec3& place : places_on(light, point))
+        sum += free(point, place, blocker) ? 1 : 0;
+    return sum / kPlaces;
+}
+
+bool LitScene::soft(const Light& light, const LitPoint& point) const {
+    uint32_t blocker = ray::PlacedScenes::kNothing;
+    const std::array<glm::dvec3, kPlaces> places = places_on(light, point);
+    const bool first = free(point, places[0], blocker);
+    return std::any_of(places.begin() + 1, places.end(), [&](const glm::dvec3& place) {
+        return free(point, place, blocker) != first;
+    });
 }
 
 }  // namespace lodestone::light

@@ -50,6 +50,8 @@ public:
     /// The share of a light that reaches a point; see-through surfaces hide nothing. `blocker`: see
     /// Reaches.
     double reaches(const Light& light, const LitPoint& point, uint32_t& blocker) const;
+    /// Whether a part of a light, but not all of it, reaches a point, by a few rays.
+    bool soft(const Light& light, const LitPoint& point) const;
     /// The distance of what hides a part of a sun from a point, the farthest of it, by a few rays;
     /// 0 where all of the sun is hidden, or nothing.
     double penumbra_from(const Light& sun, const LitPoint& point) const;
@@ -74,6 +76,8 @@ private:
         SurfaceReflection reflection;
         bool see_through = false;
     };
+    /// Whether nothing hides a place of a lamp from a point.
+    bool free(const LitPoint& point, const glm::dvec3& place, uint32_t& blocker) const;
     LitSurface surface_of(const DrawnThing& lit, uint16_t slot) const;
     SceneShape shape_of(const DrawnThing& lit);
     std::vector<LitPoint> followed(SightRay ray) const;
@@ -87,7 +91,7 @@ private:
     ray::PlacedScenes seen_;
     ray::PlacedScenes blocking_;
     ray::PlacedScenes dimming_;  // blocking_, and what is partly clear
-    image::TexelCache texels_;
+    std::shared_ptr<image::TexelCache> texels_;
     double tolerance_ = 0;
     double least_ = 0;  // no ray begins nearer than this to the surface it leaves
 };

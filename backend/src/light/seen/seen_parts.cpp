@@ -24,12 +24,12 @@ namespace lodestone::light {
 namespace {
 
 // The rays through a pixel, and through all pixels together.
-// Taste: more find smaller things behind gaps, for 3 us each.
-constexpr double kRaysOfPixel = 2;
+// Taste: more find smaller things behind gaps, for 5 to 10 us each with their shadows.
+constexpr double kRaysOfPixel = 1;
 constexpr double kMostRays = 1 << 20;  // Taste: as kRaysOfPixel
 // The width of a part, in distances between rays: a part of which an eighth is seen is met.
 // Taste: a larger value leaves out less, a smaller one misses more.
-constexpr double kPartWidth = 8;
+constexpr double kPartWidth = 6;
 // The rays toward a part that no ray through the picture met, and those along suns.
 // Taste: more find parts of which less is seen.
 constexpr int kAims = 8;

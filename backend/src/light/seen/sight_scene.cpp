@@ -51,7 +51,7 @@ SightScene::SightShape SightScene::shape_of(const DrawnThing& thing) {
         clear = clear || lets_light_through(covering);
     }
     if (clear)
-        shape.skin = std::make_shared<const ray::MeshSkin>(materials, texels_);
+        shape.skin = std::make_shared<const ray::MeshSkin>(materials, *renderer_.texels);
     shape.scene = std::make_shared<const ray::MeshScene>(*shape.mesh, shape.skin);
     return shape;
 }

@@ -77,7 +77,6 @@ private:
     std::vector<uint8_t> bends_;  // by material
     ray::PlacedScenes seen_;
     ray::PlacedScenes shading_;
-    image::TexelCache texels_;
     double least_ = 0;
 };
 

@@ -43,7 +43,7 @@ SkySurface SkySurfaces::made(const Representation& representation) {
     const bool any = std::find(out.see_through.begin(), out.see_through.end(), uint8_t{1}) !=
                      out.see_through.end();
     ray::SkinPtr skin =
-        any ? std::make_shared<const ray::MeshSkin>(materials, texels_) : ray::SkinPtr{};
+        any ? std::make_shared<const ray::MeshSkin>(materials, *texels_) : ray::SkinPtr{};
     out.scene = std::make_shared<const ray::MeshScene>(*out.mesh, std::move(skin));
     return out;
 }
@@ -68,7 +68,7 @@ void SkySurfaces::add(std::span<const Representation* const> representations, co
     std::vector<Material> materials;
     for (const Material& material : model_.materials)
         materials.push_back(clear_material(material));
-    skin_ = std::make_shared<const ray::MeshSkin>(materials, texels_);
+    skin_ = std::make_shared<const ray::MeshSkin>(materials, *texels_);
 }
 
 void SkyScene::join(const SkyOccluder& occluder, const SkySurface& surface) {

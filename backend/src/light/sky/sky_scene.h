@@ -35,7 +35,10 @@ struct SkySurface {
 /// rays through: always the same ones.
 class SkySurfaces {
 public:
-    explicit SkySurfaces(const Model& model) : model_(model) {}
+    /// `texels`: the masks of the model as far as they are decoded.
+    explicit SkySurfaces(const Model& model, std::shared_ptr<image::TexelCache> texels =
+                                                 std::make_shared<image::TexelCache>())
+        : model_(model), texels_(std::move(texels)) {}
     /// Makes what is not made yet. Throws Error(RaysUnavailable), Error(Internal) for what is not
     /// resident, Error(BadFile) for a mask that cannot be decoded.
     void add(std::span<const Representation* const> representations, const Job& job);
@@ -51,7 +54,7 @@ private:
 
     const Model& model_;
     std::unordered_map<Hash, SkySurface> known_;
-    image::TexelCache texels_;
+    std::shared_ptr<image::TexelCache> texels_;
     ray::SkinPtr skin_;
 };
 

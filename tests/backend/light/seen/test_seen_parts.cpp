@@ -8,6 +8,7 @@
 #include "scenes/with_rays.h"
 
 #include <algorithm>
+#include <limits>
 
 using namespace lodestone;
 using namespace lodestone::light;
@@ -286,4 +287,24 @@ TEST_F(SeenPartsTest, ItCanBeStopped) {
     EXPECT_THROW(
         SeenParts(model, renderer, drawn, view_, model.lights, Job(&cancel, nullptr, nullptr)),
         Error);
+}
+
+TEST_F(SeenPartsTest, StrangeMeshesAreSurvived) {
+    Mesh strange = shapes::sphere(1, 4);
+    for (size_t i = 0; i < strange.positions.size(); i += 5)
+        strange.positions[i].x = i % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : 1e38f;
+    add(strange, {8, 0, 0});
+    Mesh empty = shapes::quad(1, 1);
+    empty.triangles.clear();
+    add(empty, {8, 0, 0});
+    Mesh flat = shapes::quad(1, 1);
+    flat.positions.assign(flat.positions.size(), {0, 0, 0});
+    add(flat, {8, 0, 0});
+    const size_t seen = add({6, 1, 0}, {1, 1, 1});
+    model_.lights = {sun({1, 0, -1})};
+    model_.lights.push_back(sun({0, 0, 0}));
+    model_.lights.push_back(sun({std::numeric_limits<double>::quiet_NaN(), 0, 1}));
+    const SeenParts found = parts();
+    EXPECT_NE(found.needs(seen) & kSeen, 0);
+    EXPECT_EQ(found.needs(1), 0);
 }
