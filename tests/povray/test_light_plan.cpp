@@ -141,12 +141,14 @@ TEST_F(LightPlanTest, LampsThatMakeAPictureSlowAreNamedAndOthersAreNot) {
     Builder builder;
     const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({0.8, 0.8, 0.8})});
     builder.place(box, box_at({0, 0, -0.2}, {4.0 * kRooms, 4, 0}), "floor");
-    for (int i = 0; i < 32; ++i) {
+    for (int i = 0; i < 4 * kRooms; ++i)  // whose shadows are soft
+        builder.place(box, box_at({i, 0, 2}, {i + 0.5, 4, 2.1}), "slat");
+    for (int i = 0; i < 64; ++i) {
         Light lamp;
         lamp.kind = LightKind::Point;
         lamp.power = 8;
         lamp.radius = 0.3;
-        lamp.position = {0.75 * i, 1.5 + i % 2, 6};
+        lamp.position = {0.375 * i, 1.5 + i % 2, 6};
         builder.model.lights.push_back(lamp);
     }
     builder.finish();
@@ -158,7 +160,7 @@ TEST_F(LightPlanTest, LampsThatMakeAPictureSlowAreNamedAndOthersAreNot) {
     view.height *= 4;
     const ExportReport slow = scenes::write(builder.model, view, options, problems);
     EXPECT_GT(slow.shadow_rays, 40);
-    EXPECT_LE(slow.shadow_rays, 64);
+    EXPECT_LE(slow.shadow_rays, 1.1 * 64);
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_EQ(problems[0].code, "slow_lamps");
     const std::string rays = std::to_string(std::lround(slow.shadow_rays)) + " shadow rays";
@@ -166,7 +168,7 @@ TEST_F(LightPlanTest, LampsThatMakeAPictureSlowAreNamedAndOthersAreNot) {
     problems.clear();
     builder.model.lights.resize(2);
     const ExportReport quick = scenes::write(builder.model, view, options, problems);
-    EXPECT_NEAR(quick.shadow_rays, 4, 0.1);
+    EXPECT_NEAR(quick.shadow_rays, 2.2, 0.1);
     EXPECT_TRUE(problems.empty());
 }
 

@@ -59,8 +59,9 @@ constexpr int kMostRays = 1025;
 /// The rays along an edge that a light needs at one kind of difference, over the points of a region.
 class GridNeed {
 public:
-    GridNeed(const Light& light, const View& view, const GridDemands& demands)
+    GridNeed(const Light& light, const IsSoft& soft, const View& view, const GridDemands& demands)
         : light_(light),
+          soft_(soft),
           view_(view),
           extent_(extent_of(light)),
           narrowest_(std::max(kLeastPenumbra, demands.shadow_error)),
@@ -71,8 +72,10 @@ public:
         const double steps = display_steps(all, part) / step_;
         const double pixels = penumbra_at(light_, view_, point.position) / narrowest_;
         // A row of rays too few is half a step off.
-        const double rays =
-            pixels > 1 ? std::min(std::max(2.0, pixels / kPenumbraeOfRay), steps / 2) : 1;
+        double rays = pixels > 1 ? std::min(std::max(2.0, pixels / kPenumbraeOfRay), steps / 2) : 1;
+        // Most points see all of a lamp or nothing of it.
+        if (rays > 1 && !soft_(light_, point))
+            rays = 1;
         ++points_by_rays_[grid_rays(rays, kMostRays)];
         ++points_;
         // The middles of n parts of a width w at the distance d give the light of all of it to
@@ -113,6 +116,7 @@ private:
     }
 
     const Light& light_;
+    const IsSoft& soft_;
     const View& view_;
     double extent_;
     double narrowest_;
@@ -157,8 +161,9 @@ double shadow_rays(const Light& light, const LampGrid& grid) {
 
 std::vector<std::vector<LampGrid>> fit_lamp_grids(const LightTree& tree, const LightCut& cut,
                                                   std::span<const LitPoint> points,
-                                                  const LightShares& shares, const View& view,
-                                                  const GridDemands& demands, const Job& job) {
+                                                  const LightShares& shares, const IsSoft& soft,
+                                                  const View& view, const GridDemands& demands,
+                                                  const Job& job) {
     std::vector<std::vector<uint32_t>> members(cut.size());
     for (size_t i = 0; i < points.size(); ++i)
         members.at(points[i].region).push_back(static_cast<uint32_t>(i));
@@ -169,7 +174,7 @@ std::vector<std::vector<LampGrid>> fit_lamp_grids(const LightTree& tree, const L
         std::vector<GridNeed> needs;
         std::vector<LampGrid> finest;
         for (const uint32_t node : nodes) {
-            needs.emplace_back(tree.nodes[node].light, view, demands);
+            needs.emplace_back(tree.nodes[node].light, soft, view, demands);
             finest.push_back(finest_grid(tree.nodes[node].light, demands.rays));
         }
         std::vector<glm::dvec3> parts(nodes.size());

@@ -5,6 +5,8 @@
 
 #include "light/light_cut.h"
 
+#include <functional>
+
 namespace lodestone::light {
 
 /// How the size of a light is sampled for a part of a picture.
@@ -42,15 +44,19 @@ int shorter_edge(const Light& light, int rays);
 /// points with 2 x 2, and casts more where these disagree.
 double shadow_rays(const Light& light, const LampGrid& grid);
 
-/// By region, in the order of its lights: the coarsest grids that show no step but at few points.
-/// Along an edge there is a ray for every three pixels of the penumbra that can be told apart, or
+/// Whether a part of a light, and not all of it, reaches a point.
+using IsSoft = std::function<bool(const Light&, const LitPoint&)>;
+
+/// By region, in the order of its lights: the coarsest grids that show no step but at few points,
+/// of which only those in soft edges count. Along an edge there is a ray for every three pixels of the penumbra that can be told apart, or
 /// for every two steps of an 8-bit display that the light is worth at the point (half a row of rays
 /// is then one step), whichever is less; and as many as keep its unhidden light within half a step
 /// where it is near and wide. Never more than finest_grid(). Any number of threads gives the same
 /// result.
 std::vector<std::vector<LampGrid>> fit_lamp_grids(const LightTree& tree, const LightCut& cut,
                                                   std::span<const LitPoint> points,
-                                                  const LightShares& shares, const View& view,
-                                                  const GridDemands& demands, const Job& job = {});
+                                                  const LightShares& shares, const IsSoft& soft,
+                                                  const View& view, const GridDemands& demands,
+                                                  const Job& job = {});
 
 }  // namespace lodestone::light

@@ -46,9 +46,10 @@ constexpr size_t kMostLamps = 20000;
 // The most lamps where none can be chosen by what they light.
 // Taste: with more of them, each an area with 81 rays or more, no picture is finished.
 constexpr size_t kMostUnchosen = 64;
-// The rays that POV-Ray casts to a light that lights a point, where many points face away from it.
-// Fitted: 2.4 and 1.3 in night_street and night_tree of tests/bench/scenes.
-constexpr double kRaysOfLamp = 2;
+// The rays that POV-Ray casts to a light that lights a point: many points face away from it, and few
+// lie where its shadows are soft.
+// Fitted: 1.0, 0.9 and 1.4 in night_street, night_tree and night_hotel of tests/bench/scenes.
+constexpr double kRaysOfLamp = 1.1;
 // The most distinct triangles.
 // Taste: each takes 130 bytes while lights are chosen.
 constexpr uint64_t kMostTriangles = 2'000'000;
@@ -267,8 +268,10 @@ LightPlan plan_lamps(const LitScene& scene, LitGrid& grid, std::span<const Light
     const LightCut cut = cut_lights(tree, points, shares, regions.count, reaches, pixel_error, job);
     GridDemands finely = demands.grids;
     finely.apart = view.width / static_cast<double>(grid.columns);
-    const std::vector<std::vector<LampGrid>> grids =
-        fit_lamp_grids(tree, cut, points, shares, view, finely, job);
+    const std::vector<std::vector<LampGrid>> grids = fit_lamp_grids(
+        tree, cut, points, shares,
+        [&](const Light& light, const LitPoint& point) { return scene.soft(light, point); }, view,
+        finely, job);
     // Added points look at corners: the mean is that of the evenly spread ones.
     return plan_of({tree, cut, grids}, std::span(points).first(even), regions, drawn.size(), many);
 }

@@ -43,12 +43,13 @@ std::vector<LitPoint> floor_at(double x, double others) {
     return points;
 }
 
-LampGrid grid_of(const Light& light, const std::vector<LitPoint>& points,
-                 const GridDemands& demands = {}) {
+LampGrid grid_of(
+    const Light& light, const std::vector<LitPoint>& points, const GridDemands& demands = {},
+    const IsSoft& soft = [](const Light&, const LitPoint&) { return true; }) {
     const LightTree tree =
         make_light_tree({&light, 1}, [](const glm::dvec3&, const glm::dvec3&) { return true; });
     const LightShares shares(points.size(), {1.0f});
-    return fit_lamp_grids(tree, {{0}}, points, shares, from_above(), demands).at(0).at(0);
+    return fit_lamp_grids(tree, {{0}}, points, shares, soft, from_above(), demands).at(0).at(0);
 }
 
 }  // namespace
@@ -127,4 +128,29 @@ TEST(LampGrids, WhatLiesBetweenPointsAndALampIsNearIt) {
     demands.apart = 640.0 * 0.3;                                   // 1.8 m at the floor
     EXPECT_LT(grid_of(panel(0.1, 0.3), points, demands).rays, 9);  // too small to be seen so near
     EXPECT_EQ(grid_of(panel(3, 0.3), points, demands), (LampGrid{9, true}));
+}
+
+// Bulbs on a tree lit all of its cones through grids of rays, all of which ended at the same place.
+TEST(LampGrids, WherePointsSeeAllOfALampOrNothingOneRayIsEnough) {
+    Light bulb = panel(0.3, 100);
+    bulb.kind = LightKind::Point;
+    bulb.radius = 0.15;
+    std::vector<LitPoint> points;
+    for (int i = 0; i < 20; ++i) {
+        const std::vector<LitPoint> more = floor_at(1, 0);
+        points.insert(points.end(), more.begin(), more.end());
+    }
+    const auto rays = [&](double share) {
+        size_t asked = 0;
+        return grid_of(bulb, points, {},
+                       [&](const Light&, const LitPoint&) {
+                           return static_cast<double>(asked++) <
+                                  share * static_cast<double>(points.size());
+                       })
+            .rays;
+    };
+    EXPECT_EQ(rays(0), 1);
+    EXPECT_EQ(rays(0.005), 1);  // a few points count for nothing
+    EXPECT_GT(rays(0.02), 2);
+    EXPECT_EQ(rays(0.02), rays(1));
 }
