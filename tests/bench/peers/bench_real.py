@@ -53,6 +53,8 @@ DEFAULT = (
 )  # fmt: skip
 SAMPLES, CONVERGED = 16, 256
 TIMEOUT = 3600
+# A user's: where Python may not keep what it compiled, every start compiles the add-on anew.
+PLAIN = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
 
 
 class Missing(Exception):
@@ -71,7 +73,7 @@ def cpu_of(command: list, log: Path, environment: dict | None = None) -> float:
     with open(log, "wb") as out:
         done = subprocess.run(
             list(map(str, command)), stdin=subprocess.DEVNULL, stdout=out,
-            stderr=subprocess.STDOUT, env={**os.environ, **(environment or {})},
+            stderr=subprocess.STDOUT, env={**PLAIN, **(environment or {})},
             timeout=TIMEOUT, check=False,
         )  # fmt: skip
     if done.returncode not in (0, 3):  # 3: incomplete, and named in the report
