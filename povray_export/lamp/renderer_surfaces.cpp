@@ -40,6 +40,7 @@ light::SurfaceReflection reflection_of(const Material& material) {
     light::SurfaceReflection out;
     out.albedo = glm::clamp(material.base_color, kDarkest, 1.0);
     out.highlight = highlight_of(material, finish);
+    out.may_mirror = may_mirror(material, true);
     out.mirror = finish.mirror > 0 || finish.mirror_grazing > 0 || refraction_of(material) > 0;
     return out;
 }

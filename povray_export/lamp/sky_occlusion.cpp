@@ -414,7 +414,7 @@ private:
         std::unordered_map<Hash, std::vector<size_t>> alike;
         for (size_t i = 0; i < all_.things().size(); ++i) {
             const SkyThing& thing = all_.things()[i];
-            if (!all_.skipped(thing))
+            if (!all_.skipped(thing) && lights_[i])
                 alike[all_.finest_of(thing).summary.hash].push_back(i);
         }
         for (const auto& [hash, numbers] : alike) {

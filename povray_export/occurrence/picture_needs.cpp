@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/occurrence/picture_needs.h"
 
+#include "base/error.h"
 #include "povray_export/scene/camera_writer.h"
 #include "povray_export/scene/invertible_transform.h"
 #include "ray/mesh_scene.h"
@@ -18,6 +19,9 @@ constexpr double kRaysOfTriangle = 10;
 /// The most distinct triangles that are looked through.
 /// Taste: a larger value saves more of larger scenes, for 0.3 kB and 3 us each.
 constexpr uint64_t kMostTriangles = 2'000'000;
+/// The most triangles of all placements together.
+/// Taste: a byte for each.
+constexpr uint64_t kMostPlaced = uint64_t{1} << 28u;
 
 }  // namespace
 
@@ -30,6 +34,7 @@ void PictureNeeds::find(const Model& model, const light::RendererSurfaces& rende
     std::vector<light::DrawnThing> drawn;
     std::unordered_set<Hash> known;
     uint64_t triangles = 0;
+    uint64_t placed = 0;
     drawn_.assign(cut.chosen.size(), kUnknown);
     for (size_t position = 0; position < cut.chosen.size(); ++position) {
         const choose::CutNode& node = cut.nodes.at(cut.chosen[position]);
@@ -38,15 +43,22 @@ void PictureNeeds::find(const Model& model, const light::RendererSurfaces& rende
         Affine world = cut.world(node);
         if (representation.summary.kind == Kind::Assembly || !make_invertible(world))
             continue;
+        placed += representation.summary.cost.triangles;
         if (known.insert(representation.summary.hash).second)
             triangles += representation.summary.cost.triangles;
         drawn_[position] = static_cast<uint32_t>(drawn.size());
         drawn.push_back({&representation, world, node.hidden});
     }
-    if (triangles > kMostTriangles ||
+    if (triangles > kMostTriangles || placed > kMostPlaced ||
         kRaysOfTriangle * static_cast<double>(triangles) < light::SeenParts::rays(view))
         return;
-    parts_.emplace(model, renderer, drawn, view, lights, job);
+    try {
+        parts_.emplace(model, renderer, drawn, view, lights, job);
+    } catch (const Error& error) {
+        if (error.status == Status::Cancelled)
+            throw;
+        return;  // a mask that cannot be decoded: what draws it says so
+    }
     if (parts_->known())
         count_bytes(drawn);
     else

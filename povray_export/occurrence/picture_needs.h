@@ -18,8 +18,7 @@ namespace lodestone::povray {
 /// where the view asks for what is off screen in full.
 class PictureNeeds {
 public:
-    /// Finds what is needed; `lights`: all that throw shadows. Throws Error(Cancelled),
-    /// Error(BadFile).
+    /// Finds what is needed; `lights`: all that throw shadows. Throws Error(Cancelled).
     void find(const Model& model, const light::RendererSurfaces& renderer, const choose::Cut& cut,
               const View& view, std::span<const Light> lights, const Job& job);
 

@@ -404,9 +404,7 @@ bool bumpy(const Material& material) {
            (material.other && bumpy(*material.other));
 }
 
-bool rays_go_on(const Material& material, bool uvs) {
-    if (material.alpha_mode != AlphaMode::Opaque || share(material.transmission, 0) > 0)
-        return true;
+bool may_mirror(const Material& material, bool uvs) {
     // The smoothest that pictures may make of it, and the most metal, mirrors the most.
     SurfaceLook look = look_of(material);
     if (uvs && material.roughness_texture)
@@ -414,7 +412,12 @@ bool rays_go_on(const Material& material, bool uvs) {
     if (uvs && material.metallic_texture)
         look.metallic = 1;
     return finish_of(look).mirror_grazing > 0 ||
-           (material.other && rays_go_on(*material.other, uvs));
+           (material.other && may_mirror(*material.other, uvs));
+}
+
+bool rays_go_on(const Material& material, bool uvs) {
+    return material.alpha_mode != AlphaMode::Opaque || share(material.transmission, 0) > 0 ||
+           may_mirror(material, uvs) || (material.other && rays_go_on(*material.other, uvs));
 }
 
 double refraction_of(const Material& material) {

@@ -35,6 +35,10 @@ std::string texture_text(const Material& material, const TexturedSurface& surfac
 /// Whether the material shows more on a flat surface, because it has bumps.
 bool bumpy(const Material& material);
 
+/// Whether the surface mirrors somewhere: by what its pictures may make of it, if `uvs` (pictures
+/// are shown), or by what it is mixed with.
+bool may_mirror(const Material& material, bool uvs);
+
 /// Whether rays go on at the surface, mirrored or through it. POV-Ray follows such a ray for each of
 /// the textures of a triangle's corners. `uvs`: pictures are shown.
 bool rays_go_on(const Material& material, bool uvs);

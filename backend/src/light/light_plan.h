@@ -18,7 +18,8 @@ namespace lodestone::light {
 struct SurfaceReflection {
     glm::dvec3 albedo{0.8};  // the diffuse share of each color
     SurfaceHighlight highlight;
-    bool mirror = false;  // rays go on from it, mirrored or refracted
+    bool mirror = false;      // rays go on from it, mirrored or refracted
+    bool may_mirror = false;  // somewhere of it: by its pictures, or by what it is mixed with
 };
 
 /// The surfaces of a model as its renderer draws them.

@@ -7,7 +7,7 @@
 #include "choose/off_screen.h"
 #include "choose/view_pyramid.h"
 #include "geometry/part_tree.h"
-#include "light/light_arrival.h"
+#include "light/seen/shadow_suns.h"
 #include "light/seen/sight_scene.h"
 #include "measure/visible/convex_bound.h"
 
@@ -30,26 +30,21 @@ constexpr double kMostRays = 1 << 20;  // Taste: as kRaysOfPixel
 // The width of a part, in distances between rays: a part of which an eighth is seen is met.
 // Taste: a larger value leaves out less, a smaller one misses more.
 constexpr double kPartWidth = 6;
-// The rays toward a part that no ray through the picture met, and those along suns.
+// The rays toward a part that no ray through the picture met, and those along suns; fewer, but one,
+// where all parts together would have more than the most.
 // Taste: more find parts of which less is seen.
 constexpr int kAims = 8;
-constexpr int kShadowAims = 4;  // Taste: as kAims
+constexpr int kShadowAims = 4;         // Taste: as kAims
+constexpr size_t kMostAims = 1 << 21;  // Taste: some seconds
 // The mirrors in a row that a ray follows.
 // Taste: more find things deeper in mirrors.
 constexpr int kMostMirrors = 4;
-// The suns that a ray looks for from each place; of more, so many by chance.
+// The suns that a ray looks for from each place: the strongest, and others by chance.
 // Taste: more tell better what throws faint shadows.
 constexpr size_t kSunsOfPlace = 2;
 // The tests of things against lamps, beyond which everything throws shadows.
 // Taste: a second or so.
 constexpr double kMostLampTests = 4e6;
-
-/// A sun whose shadows show.
-struct ShadowSun {
-    const Light* light = nullptr;
-    glm::dvec3 way{0, 0, 1};  // to it; has length 1
-    double radius = 0;        // of its disk at distance 1
-};
 
 /// The least of some sizes, from any thread.
 class LeastSize {
@@ -85,14 +80,10 @@ public:
             first_.push_back(first_.back() + scene_.mesh(i).triangles.size());
         needs_.resize(first_.back(), 0);
         spacing_ = std::sqrt(static_cast<double>(view.width) * view.height / SeenParts::rays(view));
+        suns_ = shadow_suns(lights);
         for (const Light& light : lights) {
-            if (!choose::casts_shadows(light))
-                continue;
-            if (light.kind != LightKind::Sun)
+            if (choose::casts_shadows(light) && light.kind != LightKind::Sun)
                 lamps_.push_back(&light);
-            else if (shines_as_sun(light))
-                suns_.push_back({&light, -glm::normalize(light.direction),
-                                 std::tan(std::clamp(light.angle / 2, 0.0, 1.5))});
         }
     }
 
@@ -156,7 +147,8 @@ private:
                               at.v, walk.direction);
             if (normals.any)
                 shade(at, normals, random);
-            if (!at.ends)
+            // Some rays go on through what is half clear, and some are mirrored.
+            if (!at.ends && !(at.mirrors && random.uniform() < 0.5))
                 continue;
             if (!at.mirrors || !normals.any || mirrors++ == kMostMirrors)
                 return;
@@ -170,19 +162,16 @@ private:
         }
     }
 
-    /// Notes what hides suns from a place that is seen.
+    /// Notes what hides suns from a place that is seen: the strongest, and one of the others.
     void shade(const SightCrossing& place, const SightNormals& normals, PcgRandom& random) {
         const size_t count = std::min(suns_.size(), kSunsOfPlace);
         const double pixel = choose::pixel_size(view_, place.way);
         for (size_t i = 0; i < count; ++i) {
-            const ShadowSun& sun =
-                suns_[suns_.size() == count
-                          ? i
-                          : std::min(static_cast<size_t>(random.uniform() *
-                                                         static_cast<double>(suns_.size())),
-                                     suns_.size() - 1)];
+            const double others = static_cast<double>(suns_.size() - i);
+            const size_t chance = i + static_cast<size_t>(random.uniform() * others);
+            const ShadowSun& sun = suns_[i == 0 ? 0 : std::min(chance, suns_.size() - 1)];
             SightWalk walk;
-            walk.direction = place_on(sun, random);
+            walk.direction = way_to(sun, random);
             const double side = glm::dot(walk.direction, normals.flat) < 0 ? -1 : 1;
             if (side < 0 && !(glm::dot(walk.direction, normals.smooth) > 0))
                 continue;
@@ -197,15 +186,6 @@ private:
                     break;
             }
         }
-    }
-
-    /// The way to a place on a sun.
-    static glm::dvec3 place_on(const ShadowSun& sun, PcgRandom& random) {
-        const double turn = 2 * kPi * random.uniform();
-        const double out = sun.radius * std::sqrt(random.uniform());
-        const glm::dvec3 u = perpendicular(sun.way);
-        const glm::dvec3 v = glm::cross(sun.way, u);
-        return glm::normalize(sun.way + out * (std::cos(turn) * u + std::sin(turn) * v));
     }
 
     void make_trees() {
@@ -302,8 +282,31 @@ private:
         return triangles[std::min(static_cast<size_t>(at), triangles.size() - 1)];
     }
 
+    /// The rays for each of the parts that need a look, `wanted` of them or fewer.
+    template <typename NeedsLook>
+    int aims_of(int wanted, const NeedsLook& needs_look) {
+        std::atomic<size_t> parts{0};
+        parallel_for(drawn_.size(), [&](size_t i) {
+            const auto drawn = static_cast<uint32_t>(i);
+            size_t count = 0;
+            visit_parts(
+                drawn, [&](const Bound& bound) { return seen_width(bound); },
+                [&](std::span<const uint32_t> triangles, const Bound& bound) {
+                    count += needs_look(drawn, triangles, bound) ? 1 : 0;
+                });
+            parts += count;
+        });
+        return static_cast<int>(std::clamp<size_t>(kMostAims / std::max<size_t>(parts, 1), 1,
+                                                   static_cast<size_t>(wanted)));
+    }
+
     /// Looks at the parts that no ray through the picture met.
     void aim() {
+        const auto needs_look = [&](uint32_t drawn, std::span<const uint32_t> triangles,
+                                    const Bound& bound) {
+            return !pyramid_.outside(bound) && !any(drawn, triangles, kSeen);
+        };
+        const int aims = aims_of(kAims, needs_look);
         parallel_for(drawn_.size(), [&](size_t i) {
             const auto drawn = static_cast<uint32_t>(i);
             if ((drawn_[i].hidden & kCameraRays) != 0 || !finite(drawn_[i]))
@@ -314,9 +317,10 @@ private:
             visit_parts(
                 drawn, [&](const Bound& bound) { return seen_width(bound); },
                 [&](std::span<const uint32_t> triangles, const Bound& bound) {
-                    if (pyramid_.outside(bound) || any(drawn, triangles, kSeen))
+                    job_.check();
+                    if (!needs_look(drawn, triangles, bound))
                         return;
-                    for (int k = 0; k < kAims; ++k) {
+                    for (int k = 0; k < aims; ++k) {
                         if (sees(drawn, one_of(triangles, random), random)) {
                             note_all(drawn, triangles, kSeen);
                             return;
@@ -354,6 +358,9 @@ private:
         if (suns_.empty() || model_.root >= model_.objects.size())
             return;
         const Box3 all = model_.objects[model_.root].bound().box;
+        const int aims =
+            aims_of(kShadowAims, [&](uint32_t drawn, std::span<const uint32_t> triangles,
+                                     const Bound&) { return !any(drawn, triangles, kShades); });
         parallel_for(drawn_.size(), [&](size_t i) {
             const auto drawn = static_cast<uint32_t>(i);
             if ((drawn_[i].hidden & kShadowRays) != 0 || !finite(drawn_[i]))
@@ -364,14 +371,18 @@ private:
             visit_parts(
                 drawn, [&](const Bound& bound) { return seen_width(bound); },
                 [&](std::span<const uint32_t> triangles, const Bound& bound) {
-                    if (any(drawn, triangles, kShades))
+                    job_.check();
+                    // Parts that are far away may be wider than those that were looked at above.
+                    if (any(drawn, triangles, kShades)) {
+                        note_all(drawn, triangles, kShades);
                         return;
+                    }
                     for (size_t k = 0; k < std::min(suns_.size(), kSunsOfPlace); ++k) {
                         if (!choose::shadow_reach(*suns_[k].light, bound, &pyramid_, all,
                                                   view_.camera.position)
                                  .seen)
                             continue;
-                        for (int aim = 0; aim < kShadowAims; ++aim) {
+                        for (int aim = 0; aim < aims; ++aim) {
                             const uint32_t triangle = one_of(triangles, random);
                             if (shows_shadow(point_on(drawn, triangle, random), suns_[k], random)) {
                                 note_all(drawn, triangles, kShades);
@@ -386,7 +397,7 @@ private:
     /// Whether the eye sees anything that lies in the shadow of a point.
     bool shows_shadow(const glm::dvec3& point, const ShadowSun& sun, PcgRandom& random) const {
         SightWalk down;
-        down.direction = -place_on(sun, random);
+        down.direction = -way_to(sun, random);
         const double way = glm::length(point - view_.camera.position);
         down.origin = point + scene_.aside(way) * down.direction;
         SightCrossing at;

@@ -25,6 +25,10 @@ Material covering_material(Material material) {
     return material;
 }
 
+bool transmits(const Material& material) {
+    return material.transmission > 0 || (material.other && transmits(*material.other));
+}
+
 /// Whether a material sends rays on in directions that its normals alone do not tell.
 bool bends_rays(const Material& material, bool mirrors) {
     const bool own = material.transmission > 0 || (mirrors && material.normal_texture) ||
@@ -59,8 +63,11 @@ SightScene::SightShape SightScene::shape_of(const DrawnThing& thing) {
 SightScene::SightScene(const Model& model, const RendererSurfaces& renderer,
                        std::span<const DrawnThing> drawn, const Job& job)
     : model_(model), renderer_(renderer), drawn_(drawn) {
-    for (size_t i = 0; i < model.materials.size(); ++i)
-        bends_.push_back(bends_rays(model.materials[i], renderer.reflections[i].mirror) ? 1 : 0);
+    for (size_t i = 0; i < model.materials.size(); ++i) {
+        const Material& material = model.materials[i];
+        bends_.push_back(bends_rays(material, renderer.reflections[i].may_mirror) ? 1 : 0);
+        transmits_.push_back(transmits(material) ? 1 : 0);
+    }
     std::unordered_map<Hash, uint32_t> known;
     std::vector<uint32_t> firsts;
     for (uint32_t i = 0; i < drawn.size(); ++i) {
@@ -100,13 +107,16 @@ bool SightScene::step(SightWalk& walk, SightCrossing& out) const {
         ++walk.steps;
         const DrawnThing& thing = drawn_[hit.name];
         const SightShape& shape = shapes_[shape_of_[hit.name]];
-        const double onward = hit.t + aside(walk.way + hit.t);
+        const bool again = hit.name == walk.last_drawn && hit.triangle == walk.last_triangle;
+        walk.last_drawn = hit.name;
+        walk.last_triangle = hit.triangle;
+        const double onward = hit.t + (again ? 1 : kBehind) * aside(walk.way + hit.t);
         out.point = walk.origin + hit.t * walk.direction;
         out.way = walk.way + hit.t;
         walk.origin += onward * walk.direction;
         walk.way += onward;
         walk.far -= onward;
-        if ((thing.hidden & walk.sees) != 0)
+        if (again || (thing.hidden & walk.sees) != 0)
             continue;
         out.drawn = hit.name;
         out.triangle = hit.triangle;
@@ -118,7 +128,8 @@ bool SightScene::step(SightWalk& walk, SightCrossing& out) const {
         const std::vector<uint32_t>& materials = thing.representation->materials;
         const size_t material = slot < materials.size() ? materials[slot] : bends_.size();
         const bool known = material < bends_.size();
-        out.mirrors = known && renderer_.reflections[material].mirror;
+        out.mirrors = known && renderer_.reflections[material].may_mirror;
+        out.ends = out.ends && !(known && transmits_[material] != 0);
         out.bends = known && bends_[material] != 0;
         return true;
     }

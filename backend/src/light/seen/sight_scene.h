@@ -20,6 +20,9 @@ struct SightWalk {
     RayMask sees = kCameraRays;      // the class of the ray
     double way = 0;                  // metres from its beginning to `origin`
     int steps = 0;                   // the surfaces that it has met, clear ones too
+    /// The triangle that it met last, which it may meet again where it goes on.
+    uint32_t last_drawn = ray::kNoTriangle;
+    uint32_t last_triangle = ray::kNoTriangle;
 };
 
 /// A place where a ray meets something that is there.
@@ -29,10 +32,10 @@ struct SightCrossing {
     double u = 0;
     double v = 0;
     glm::dvec3 point{0.0};
-    double way = 0;    // metres from the beginning of the walk
-    bool ends = true;  // no ray goes on straight ahead
-    bool mirrors = false;
-    bool bends = false;  // rays go on in directions that only the renderer knows
+    double way = 0;        // metres from the beginning of the walk
+    bool ends = true;      // no ray goes on straight ahead, as one of a shadow does in glass
+    bool mirrors = false;  // some rays may go on mirrored
+    bool bends = false;    // rays go on in directions that only the renderer knows
 };
 
 /// The drawn things. A mesh is made ready once for all its placements. Const methods may be called
@@ -60,6 +63,9 @@ public:
     /// The share of a way by which a ray begins above what it leaves.
     /// Law: positions are known to 1e-7 of it; this is a large margin.
     static constexpr double kRelative = 1e-5;
+    /// The same behind what it went through: layers lie close to each other.
+    /// Law: a tenth, just above what positions are known to.
+    static constexpr double kBehind = 0.1;
 
 private:
     struct SightShape {
@@ -74,7 +80,8 @@ private:
     std::span<const DrawnThing> drawn_;
     std::vector<uint32_t> shape_of_;  // by drawn thing
     std::vector<SightShape> shapes_;
-    std::vector<uint8_t> bends_;  // by material
+    std::vector<uint8_t> bends_;      // by material
+    std::vector<uint8_t> transmits_;  // by material
     ray::PlacedScenes seen_;
     ray::PlacedScenes shading_;
     double least_ = 0;

@@ -56,7 +56,7 @@ protected:
         RendererSurfaces renderer;
         for (const bool mirror : mirrors_) {
             renderer.reflections.emplace_back();
-            renderer.reflections.back().mirror = mirror;
+            renderer.reflections.back().may_mirror = mirror;
         }
         std::vector<DrawnThing> drawn;
         for (const PlacedThing& thing : things_) {
@@ -307,4 +307,60 @@ TEST_F(SeenPartsTest, StrangeMeshesAreSurvived) {
     const SeenParts found = parts();
     EXPECT_NE(found.needs(seen) & kSeen, 0);
     EXPECT_EQ(found.needs(1), 0);
+}
+
+TEST_F(SeenPartsTest, ShadowsThroughASkylightWereLost) {
+    model_.lights = {sun({0, 0, -1})};
+    add({10, 0, -2}, {30, 30, 0.1});
+    Material glass;
+    glass.transmission = 1;
+    add({10, 0, 40}, {60, 60, 0.1}, glass);  // out of the picture
+    const size_t tree = add({10, 0, 45}, {3, 3, 3});
+    const SeenParts found = parts();
+    EXPECT_TRUE(found.known());
+    EXPECT_EQ(found.needs(tree), kShades);
+}
+
+TEST_F(SeenPartsTest, OfManySunsTheStrongestIsAlwaysLookedAt) {
+    for (int i = 0; i < 40; ++i) {
+        model_.lights.push_back(sun({0.01 * i, 0, -1}));
+        model_.lights.back().power = 0.01;
+    }
+    model_.lights.push_back(sun({1, 0, -1}));
+    add({10, 0, -2}, {30, 30, 0.1});
+    const Mesh fine = shapes::grid(30);  // its shadow lies in the picture
+    const size_t sheet = add(fine, {-2, -0.5, 8});
+    const SeenParts found = parts();
+    const std::span<const uint8_t> needs = found.triangles(sheet);
+    EXPECT_EQ(std::count(needs.begin(), needs.end(), kShades),
+              static_cast<std::ptrdiff_t>(needs.size()));
+    model_.lights.back().power = -1;  // takes light away where it is not hidden
+    EXPECT_EQ(parts().needs(sheet), kShades);
+}
+
+TEST_F(SeenPartsTest, AHalfClearMirrorShowsWhatIsBehindTheEye) {
+    Material pane = mirror();
+    pane.alpha_mode = AlphaMode::Blend;
+    pane.alpha = 0.3;
+    add({10, 0, 0}, {0.1, 4, 4}, pane);
+    const size_t behind_the_eye = add({-10, 0, 0}, {3, 3, 3});
+    const size_t behind_the_pane = add({15, 0, 0}, {1, 1, 1});
+    const SeenParts found = parts();
+    EXPECT_EQ(found.needs(behind_the_eye), kSeen);
+    EXPECT_EQ(found.needs(behind_the_pane), kSeen);
+}
+
+TEST_F(SeenPartsTest, AWallCloseBehindAHalfClearLayerIsSeen) {
+    Material layer;
+    layer.alpha_mode = AlphaMode::Blend;
+    layer.alpha = 0.5;
+    add({0, 0, -1000}, {4000, 4000, 1});  // makes single precision coarse
+    add(shapes::quad(40, 40), {0, 0, 0});
+    things_.back().place = {-20, -20, -3.001};
+    const size_t poster = things_.size() - 1;
+    add({12, 0, 0}, {0.001, 8, 4}, layer);
+    const size_t wall = add({12.002, 0, 0}, {0.001, 8, 4});
+    const SeenParts found = parts();
+    EXPECT_EQ(found.needs(wall) & kSeen, kSeen);
+    EXPECT_EQ(found.needs(poster) & kSeen, kSeen);
 }
