@@ -458,7 +458,7 @@ TEST(MeshCutting, WhatIsNotShownIsLeftOut) {
     const ObjectIndex object =
         builder.mesh(mesh, {builder.material(leaf(disk())), builder.matte(glm::dvec3(0.5))});
     MaskOutlines outlines;
-    const auto found = [&](std::vector<uint8_t> shown) {
+    const auto found = [&](const std::vector<uint8_t>& shown) {
         RepresentationOptions options;
         options.shown = std::make_shared<const ShownTriangles>(ShownTriangles{shown, 1});
         return cut_masks(builder.model, builder.model.objects[object].representations[0], options,

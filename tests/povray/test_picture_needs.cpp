@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards that a picture is the same without what it does not need, and what is never left out.
 #include "povray/mask_cards.h"
+#include "ray/mesh_scene.h"
 #include "scenes/fine_grids.h"
 
 #include <map>

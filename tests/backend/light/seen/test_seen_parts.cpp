@@ -194,7 +194,8 @@ TEST_F(SeenPartsTest, NoSmallThingIsMissed) {
     std::vector<size_t> small;
     for (int i = 0; i < 300; ++i) {  // a tenth of a pixel each
         const double y = (i % 20 - 9.5) * 8;
-        const double z = (i / 20 - 7.0) * 5;
+        const int row = i / 20;
+        const double z = (row - 7) * 5;
         small.push_back(add({100, y, z}, glm::dvec3(0.3)));
     }
     const SeenParts found = parts();
