@@ -18,7 +18,7 @@ struct ShownTriangles {
 };
 using ShownTrianglesPtr = std::shared_ptr<const ShownTriangles>;
 
-/// The part of a mesh of `triangles` triangles that several uses need together.
+/// The part of a mesh that several uses need together.
 class NeededTriangles {
 public:
     /// Adds a use: a byte for each triangle, 0 where it does not need it. Empty: it needs all.

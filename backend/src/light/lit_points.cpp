@@ -7,6 +7,7 @@
 #include "choose/criterion.h"
 #include "light/clear_materials.h"
 #include "light/light_arrival.h"
+#include "light/seen/distinct_shapes.h"
 #include "measure/visible/convex_bound.h"
 
 #include <glm/common.hpp>
@@ -17,7 +18,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <unordered_map>
+#include <utility>
 
 namespace lodestone::light {
 namespace {
@@ -119,19 +120,12 @@ LitScene::LitScene(const Model& model, const RendererSurfaces& renderer,
     for (size_t i = 0; i < model.materials.size(); ++i)
         surfaces_.push_back({renderer.reflections[i], lets_light_through(model.materials[i])});
     surfaces_.emplace_back();
-    std::unordered_map<Hash, uint32_t> known;
-    std::vector<uint32_t> firsts;
-    for (uint32_t i = 0; i < drawn.size(); ++i) {
-        const Hash hash = drawn[i].representation->summary.hash;
-        const auto [at, fresh] = known.try_emplace(hash, static_cast<uint32_t>(firsts.size()));
-        if (fresh)
-            firsts.push_back(i);
-        shape_of_.push_back(at->second);
-    }
-    shapes_.resize(firsts.size());
-    parallel_for(firsts.size(), [&](size_t i) {
+    DistinctShapes distinct = distinct_shapes(drawn);
+    shape_of_ = std::move(distinct.of_thing);
+    shapes_.resize(distinct.firsts.size());
+    parallel_for(shapes_.size(), [&](size_t i) {
         job.check();
-        shapes_[i] = shape_of(drawn[firsts[i]]);
+        shapes_[i] = shape_of(drawn[distinct.firsts[i]]);
     });
     for (uint32_t i = 0; i < drawn.size(); ++i) {
         const DrawnThing& lit = drawn[i];

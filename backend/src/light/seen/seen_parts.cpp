@@ -189,16 +189,10 @@ private:
     }
 
     void make_trees() {
-        std::vector<uint32_t> firsts(scene_.shapes(), ~uint32_t{0});
-        for (uint32_t i = 0; i < drawn_.size(); ++i) {
-            uint32_t& first = firsts[scene_.shape(i)];
-            first = std::min(first, i);
-        }
-        trees_.resize(firsts.size());
-        parallel_for(firsts.size(), [&](size_t shape) {
+        trees_.resize(scene_.shapes());
+        parallel_for(trees_.size(), [&](size_t shape) {
             job_.check();
-            if (firsts[shape] < drawn_.size())
-                trees_[shape].emplace(scene_.mesh(firsts[shape]));
+            trees_[shape].emplace(scene_.mesh_of_shape(shape));
         });
     }
 

@@ -3,9 +3,10 @@
 
 #include "base/parallel.h"
 #include "light/clear_materials.h"
+#include "light/seen/distinct_shapes.h"
 
 #include <algorithm>
-#include <unordered_map>
+#include <utility>
 
 namespace lodestone::light {
 namespace {
@@ -68,19 +69,12 @@ SightScene::SightScene(const Model& model, const RendererSurfaces& renderer,
         bends_.push_back(bends_rays(material, renderer.reflections[i].may_mirror) ? 1 : 0);
         transmits_.push_back(transmits(material) ? 1 : 0);
     }
-    std::unordered_map<Hash, uint32_t> known;
-    std::vector<uint32_t> firsts;
-    for (uint32_t i = 0; i < drawn.size(); ++i) {
-        const Hash hash = drawn[i].representation->summary.hash;
-        const auto [at, fresh] = known.try_emplace(hash, static_cast<uint32_t>(firsts.size()));
-        if (fresh)
-            firsts.push_back(i);
-        shape_of_.push_back(at->second);
-    }
-    shapes_.resize(firsts.size());
-    parallel_for(firsts.size(), [&](size_t i) {
+    DistinctShapes distinct = distinct_shapes(drawn);
+    shape_of_ = std::move(distinct.of_thing);
+    shapes_.resize(distinct.firsts.size());
+    parallel_for(shapes_.size(), [&](size_t i) {
         job.check();
-        shapes_[i] = shape_of(drawn[firsts[i]]);
+        shapes_[i] = shape_of(drawn[distinct.firsts[i]]);
     });
     for (uint32_t i = 0; i < drawn.size(); ++i) {
         const DrawnThing& thing = drawn[i];

@@ -54,9 +54,10 @@ public:
 
     /// The triangles of a drawn thing.
     const Mesh& mesh(uint32_t drawn) const { return *shapes_[shape_of_[drawn]].mesh; }
-    /// The number of a drawn thing's mesh, below meshes().
+    /// The number of a drawn thing's mesh, below shapes().
     uint32_t shape(uint32_t drawn) const { return shape_of_[drawn]; }
     size_t shapes() const { return shapes_.size(); }
+    const Mesh& mesh_of_shape(size_t shape) const { return *shapes_[shape].mesh; }
     /// The distance from a point, `way` metres from where its ray began, at which the next ray begins.
     double aside(double way) const { return std::max(least_, kRelative * way); }
 
