@@ -99,6 +99,17 @@ double error_on_screen(const ChoiceTable& table, const View& view, const Cut& cu
     fail(Status::InvalidArgument, "the cut was made from another table");
 }
 
+FactorField::FactorPath path_to(const FactorField& field, const FactorField::FactorPath& group,
+                                const Model& model, const Cut& cut, const CutNode& node) {
+    if (node.parent == kNoParent)
+        return group;
+    const CutNode& above = cut.nodes.at(node.parent);
+    return field.below(
+        group, cut.world(above),
+        model.objects.at(above.object).representations.at(0).assembly().placements.at(
+            node.placement));
+}
+
 ChoiceReason explain_choice(const Model& model, const View& view, const Cut& cut, uint32_t index) {
     // The path from the root, so that the lenses that touch it are found as when it was chosen.
     std::vector<uint32_t> way;
@@ -109,14 +120,7 @@ ChoiceReason explain_choice(const Model& model, const View& view, const Cut& cut
     ChoiceReason reason;
     for (size_t i = way.size(); i-- > 0;) {
         const CutNode& node = cut.nodes[way[i]];
-        if (i + 1 < way.size()) {
-            const CutNode& group = cut.nodes[node.parent];
-            path = field.below(path, cut.world(group),
-                               model.objects.at(group.object)
-                                   .representations.at(0)
-                                   .assembly()
-                                   .placements.at(node.placement));
-        }
+        path = path_to(field, path, model, cut, node);
         DetailFactors factors;
         OccurrenceSight seen;
         const OccurrenceSight* sight = &seen;

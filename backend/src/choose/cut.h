@@ -64,8 +64,7 @@ struct CutBudget {
 /// group that is good enough is drawn by its stand-in, unless its children would be drawn by levels
 /// that cost less (TableLevel::opens_from); it must be good enough for the most important object
 /// below it. Throws Error(InvalidArgument) for a view that makes no sense or a model without root.
-/// cost: one visit per opened group and chosen occurrence. Thread-safe on a const model.
-/// one visit per opened group and chosen occurrence. Thread-safe on a const model.
+/// Cost: one visit per opened group and chosen occurrence. Thread-safe on a const model.
 Cut choose_cut(const Model& model, const View& view, const Job& job = {});
 
 /// The same cut, chosen from a whole table of the model for the view's kinds, so that no table is
@@ -81,6 +80,11 @@ Cut choose_below(const Model& model, ObjectIndex root, const View& view, const J
 
 /// The same for several views that share a table for their kinds; missing rows are added to it.
 Cut choose_below(ChoiceTable& table, ObjectIndex root, const View& view, const Job& job = {});
+
+/// The facts along the path to a node, from those that FactorField::at left for its group; those of
+/// the root for a node without a group.
+FactorField::FactorPath path_to(const FactorField& field, const FactorField::FactorPath& group,
+                                const Model& model, const Cut& cut, const CutNode& node);
 
 /// How many occurrences are drawn by a level of an object.
 struct LevelUse {

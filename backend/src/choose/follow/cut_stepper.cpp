@@ -202,6 +202,7 @@ FactorField::FactorPath CutStepper::path_below(const Cut& cut, uint32_t node) {
         const CutNode& here = cut.nodes[way[i]];
         const SeenNode& seen = kept_.seen[here.transform];
         const TableRow& row = table_->row(seen.row);
+        path = path_to(*field_, path, table_->model(), cut, here);
         OccurrenceSight sight;
         DetailFactors factors;
         find_sight(walk_->view, *field_, {here, cut.world(here)}, row.group,

@@ -70,6 +70,7 @@ void refresh_lens_factors(const ChoiceTable& table, const View& view,
                 .below;
         if (here.changed.begin == here.changed.end)
             continue;
+        here.path = path_to(field, here.path, table.model(), cut, node);
         OccurrenceSight sight;
         DetailFactors factors;
         find_sight(view, field, {node, world}, row.group, local, table.object(known.row).demand,

@@ -81,7 +81,8 @@ public:
         DetailFactors factors;
         if (field_.bends()) {
             FactorField::FactorPath& path = paths_[index];
-            path = node.parent == kNoParent ? field_.root() : paths_[node.parent];
+            path = path_to(field_, node.parent == kNoParent ? field_.root() : paths_[node.parent],
+                           model_, cut_, node);
             factors = field_
                           .at(node.object, object.group(), object.bound(), cut_.world(node), bound,
                               distance(bound, view_.camera.position), path)
