@@ -12,6 +12,7 @@
 #include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/mesh/pixel_field.h"
 #include "povray_export/occurrence/clear_surfaces.h"
+#include "povray_export/occurrence/lit_uses.h"
 #include "povray_export/occurrence/occurrence_look.h"
 #include "povray_export/occurrence/occurrence_text.h"
 #include "povray_export/occurrence/picture_needs.h"
@@ -388,10 +389,12 @@ private:
                 append_object(out, use, times);
         }
         report_.occurrences = drawn.size();
+        if (plan.empty())
+            return out;
         std::vector<std::string> groups(plan.groups.size());
-        for (const light::LitPiece& piece : plan.pieces)
-            append_object(groups[piece.group], *drawn[piece.drawn], times, piece.within);
-        return plan.empty() ? out : grouped_text(plan, lights, groups);
+        for (const LitUse& lit : lit_uses(drawn, plan))
+            append_object(lit.group ? groups[*lit.group] : out, lit.use, times, lit.within);
+        return grouped_text(plan, lights, groups) + out;
     }
 
     /// Appends an object, or its part `within` a box (world frame).
