@@ -2,6 +2,8 @@
 #include "povray_export/occurrence/picture_needs.h"
 
 #include "base/error.h"
+#include "light/light_arrival.h"
+#include "light/light_plan.h"
 #include "povray_export/scene/camera_writer.h"
 #include "povray_export/scene/invertible_transform.h"
 #include "ray/mesh_scene.h"
@@ -22,6 +24,15 @@ constexpr uint64_t kMostTriangles = 2'000'000;
 /// The most triangles of all placements together.
 /// Taste: a byte for each.
 constexpr uint64_t kMostPlaced = uint64_t{1} << 28u;
+
+/// Whether the picture is worth looking through: that takes less than what it may spare. To many
+/// lamps the picture itself casts many times as many rays, and each thing on their way counts.
+bool pays(const View& view, uint64_t triangles, std::span<const Light> lights) {
+    if (static_cast<size_t>(std::count_if(lights.begin(), lights.end(), light::is_lamp)) >=
+        light::kManyLamps)
+        return true;
+    return kRaysOfTriangle * static_cast<double>(triangles) >= light::SeenParts::rays(view);
+}
 
 }  // namespace
 
@@ -49,8 +60,7 @@ void PictureNeeds::find(const Model& model, const light::RendererSurfaces& rende
         drawn_[position] = static_cast<uint32_t>(drawn.size());
         drawn.push_back({&representation, world, node.hidden});
     }
-    if (triangles > kMostTriangles || placed > kMostPlaced ||
-        kRaysOfTriangle * static_cast<double>(triangles) < light::SeenParts::rays(view))
+    if (triangles > kMostTriangles || placed > kMostPlaced || !pays(view, triangles, lights))
         return;
     try {
         parts_.emplace(model, renderer, drawn, view, lights, job);

@@ -14,8 +14,8 @@
 namespace lodestone::povray {
 
 /// The needs of one picture. Everything is needed until find() was called, and where it cannot be
-/// told or would take longer than it saves: of few triangles, of very many, with blurred depths,
-/// where the view asks for what is off screen in full.
+/// told or would take longer than it saves: of few triangles lit by few lamps, of very many, with
+/// blurred depths, where the view asks for what is off screen in full.
 class PictureNeeds {
 public:
     /// Finds what is needed; `lights`: all that throw shadows. Throws Error(Cancelled).

@@ -108,6 +108,23 @@ TEST_F(PictureNeedsScenes, SmallScenesAreNotLookedThrough) {
     EXPECT_EQ(write("small").left_out, 0u);
 }
 
+// A tree of 400 bulbs: each ray to a lamp passed the boxes of those behind it.
+TEST_F(PictureNeedsScenes, SmallScenesOfManyLampsAreLookedThrough) {
+    const ObjectIndex box = builder.mesh(shapes::cube());
+    builder.place_at(box, {0, 0, 0});
+    builder.place_at(box, {50, 0, 0});
+    for (int i = 0; i < 8; ++i) {
+        Light lamp;
+        lamp.kind = LightKind::Point;
+        lamp.position = {0.1 * i, 0, 3};
+        lamp.power = 10;
+        builder.model.lights.push_back(lamp);
+    }
+    EXPECT_EQ(write("many").left_out, 1u);
+    builder.model.lights.pop_back();
+    EXPECT_EQ(write("few").left_out, 0u);
+}
+
 TEST_F(PictureNeedsScenes, CopiesShareTheTrianglesThatAnyNeeds) {
     fill();
     write("needed");
