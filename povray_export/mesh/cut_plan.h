@@ -12,7 +12,7 @@ namespace lodestone::povray {
 /// The triangles of a slot that are seen about as finely, and how they are cut.
 struct CutBand {
     std::vector<uint32_t> triangles;
-    double tolerance = 1;     // in texels
+    double tolerance = 0;     // in texels; below 1 counts as 1
     double pictures = 0;      // that the triangles together show
     size_t most = 0;          // triangles that it may become
     size_t expected = 0;      // triangles that it becomes, about
@@ -55,7 +55,7 @@ public:
     void find_outlines();
     std::map<uint16_t, CutSlot>& slots() { return slots_; }
 
-    /// Whether no mask is outlined more coarsely than by its texels.
+    /// Whether no mask is outlined more coarsely than by its texels, nor would be in a crowd.
     bool by_texel();
     /// The corners of a triangle in the picture; false where one is beyond all sense.
     bool place(const Texture& texture, uint32_t triangle, glm::dvec2 (&at)[3]) const;
@@ -69,6 +69,7 @@ private:
     double tolerance_of(const Material& material, std::span<const uint32_t> triangles,
                         double times) const;
     bool painted_clear(const CutSlot& slot) const;
+    bool may_be_crowd(const CutSlot& slot) const;
     MaskOutlinePtr outline_that_fits(const ShownMask& mask, bool crowd) const;
     bool find_outlines_of(CutSlot& slot) const;
     void find_outline(const CutSlot& slot, bool mask, CutBand& band) const;
