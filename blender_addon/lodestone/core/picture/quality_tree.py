@@ -21,12 +21,14 @@ _DRAFT = 8.0  # pixels
 
 
 class Sampling(NamedTuple):
-    """The value that Antialiasing hands on: its kind, how many times rougher than final it is, and
-    how many samples a pixel gets at most along a side (1 and 3 where it is overridden)."""
+    """The value that Antialiasing hands on: its kind, how many times rougher than final it is (1
+    where it is overridden), from which difference of neighbors on a pixel gets more samples, and
+    how many at most along a side."""
 
     kind: str
     rough: float
-    depth: int
+    threshold: float = 0.1
+    depth: int = 3
 
 
 class Control(NamedTuple):
@@ -65,9 +67,11 @@ def _halvings(error: float) -> int:
 
 def _antialiasing(error: float) -> Sampling:
     """From a pixel on 2 x 2 samples: the pixel filter smooths what they leave, and beside converged
-    Cycles a picture is as near as one of 3 x 3 without it, which takes twice as long."""
-    depth = 3 if error < 1.0 else 2
-    return Sampling(OFF if error >= _DRAFT else ADAPTIVE, max(1.0, error), depth)
+    Cycles a picture is as near as one of 3 x 3 without it, which takes twice as long. Smaller
+    differences than a fifth (of all colors together) would not be seen among what is blurred."""
+    if error < 1.0:
+        return Sampling(ADAPTIVE, 1.0)
+    return Sampling(OFF if error >= _DRAFT else ADAPTIVE, error, 0.2 * math.sqrt(error), 2)
 
 
 def _area_samples(sampling: Sampling) -> int:
@@ -210,7 +214,7 @@ def quality(pixel_error: float, overrides: Mapping[str, Value] | None = None) ->
     sampling = found["antialias"]
     found["antialias"] = sampling.kind
     return Quality(
-        antialias_threshold=round(min(0.1 * sampling.rough, 1.0), 6),
+        antialias_threshold=round(min(sampling.threshold, 1.0), 6),
         antialias_depth=sampling.depth,
         bounce_rays=_bounce_rays(sampling),
         bounce_error=round(_bounce_error(sampling), 6),
@@ -231,7 +235,7 @@ def _value_of(control: Control, otherwise: Any, given: Mapping[str, Value]) -> A
     value = given[control.key]
     if control.least is None or control.most is None:
         known = value in (OFF, ADAPTIVE, REFERENCE)
-        return Sampling(str(value), 1.0, 3) if known else otherwise
+        return Sampling(str(value), 1.0) if known else otherwise
     if isinstance(value, str) or value != value:
         return otherwise
     limited = within(value, control.least, control.most)
