@@ -280,36 +280,6 @@ TEST_F(LightPlanTest, RoomsHaveTheirOwnLampsAndTheirFloorIsCut) {
     EXPECT_EQ(report.occurrences, 2u + kRooms);
 }
 
-// Rays to lamps looked at all parts of a ground: a night street took half as long again.
-TEST_F(LightPlanTest, AThingInPartsThrowsItsShadowAsAWhole) {
-    Builder builder;
-    add_rooms(builder);
-    Problems problems;
-    const ExportOptions options = into("rooms");
-    scenes::write(builder.finish(), from_above(1), options, problems);
-    std::istringstream lines(read_file(options.folder / "scene.pov"));
-    size_t parts = 0;
-    std::map<std::string, size_t> parted;
-    std::map<std::string, size_t> wholes;
-    for (std::string line; std::getline(lines, line);) {
-        const std::string name = line.substr(std::min(line.size(), line.find("//")));
-        if (line.find("clipped_by") != std::string::npos) {
-            ++parts;
-            ++parted[name];
-            EXPECT_NE(line.find(" no_shadow "), std::string::npos) << line;
-        } else if (line.find(" no_image no_reflection no_radiosity}") != std::string::npos) {
-            ++wholes[name];
-        } else {
-            EXPECT_EQ(line.find("no_shadow"), std::string::npos) << line;
-        }
-    }
-    EXPECT_GE(parts, size_t{kRooms});
-    ASSERT_FALSE(parted.empty());
-    for (const auto& [name, count] : parted)
-        EXPECT_EQ(wholes[name], 1u) << name << ' ' << count;
-    EXPECT_EQ(wholes.size(), parted.size());
-}
-
 TEST_F(LightPlanTest, IsTheSameEveryTimeAndOnOneThread) {
     Builder builder;
     add_rooms(builder);

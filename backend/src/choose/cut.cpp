@@ -104,10 +104,11 @@ FactorField::FactorPath path_to(const FactorField& field, const FactorField::Fac
     if (node.parent == kNoParent)
         return group;
     const CutNode& above = cut.nodes.at(node.parent);
-    return field.below(
-        group, cut.world(above),
-        model.objects.at(above.object).representations.at(0).assembly().placements.at(
-            node.placement));
+    return field.below(group, cut.world(above),
+                       model.objects.at(above.object)
+                           .representations.at(0)
+                           .assembly()
+                           .placements.at(node.placement));
 }
 
 ChoiceReason explain_choice(const Model& model, const View& view, const Cut& cut, uint32_t index) {
