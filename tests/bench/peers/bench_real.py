@@ -10,7 +10,10 @@ supertuxkart-data, fetched into the cache, and LODESTONE_TOOLS/stk_scenes), file
 256 samples, are kept in the cache (LODESTONE_BENCH_CACHE, default ~/.cache/lodestone-bench).
 
 Seconds are CPU of the whole process, without what opening the file takes. Levels are built before
-(the column says at which price). Differences are the mean over covered pixels of the absolute
+(the column says at which price); what earlier pictures found of the sky, masks and textures is not
+there, as in the first picture of a scene.
+
+Differences are the mean over covered pixels of the absolute
 difference of displayed values, 0...1, to Cycles with 256 samples and the same diffuse bounces, by
 which Cycles with 16 samples is judged, too; brightness is the ratio of the means. SSIM is that to
 our own full detail with 16 samples in every pixel. What is missing is skipped with a sentence; no
@@ -172,15 +175,26 @@ class View:
             told.write_text(json.dumps({"cpu_s": cpu}), "utf-8")
         return picture, json.loads(told.read_text("utf-8"))["cpu_s"]
 
+    @property
+    def store(self) -> Path:
+        return self.options.out / self.name.partition("/")[0] / "store"
+
+    def forget(self) -> None:
+        """Removes from the store what earlier pictures found."""
+        for name in ("sky_light.bin", "masks.bin"):
+            (self.store / name).unlink(missing_ok=True)
+        shutil.rmtree(self.store / "baked", ignore_errors=True)
+
     def batch(self, verb: str, name: str, *more: str) -> tuple[dict, float]:
         """The report of batch.py and the CPU of all its processes."""
         report = self.out / f"{name}.json"
         command = ["/usr/bin/python3", ADDON / "batch.py", verb, self.blend, "--json", report]
-        command += ["--store", self.options.out / self.name.partition("/")[0] / "store", *more]
+        command += ["--store", self.store, *more]
         cpu = cpu_of(command, self.out / f"{name}.log")
         return json.loads(report.read_text("utf-8")), cpu
 
     def drawn(self, name: str, pixel_error: float, *more: str) -> tuple[Path, dict, float]:
+        self.forget()
         picture = self.out / f"{name}.png"
         words = ["--out", picture, "--pixel-error", pixel_error, *more]
         words += ["--size", "x".join(map(str, self.options.size))]

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The half of bench_real.py inside Blender: a picture of the open file by Cycles, or one of the
-night scenes as a file.
+"""The half of bench_real.py and bench_rival.py inside Blender: a picture of the open file by
+Cycles, pictures as the file's view transform shows them, or one of the night scenes as a file.
 
 blender -b --factory-startup FILE --python THIS -- cycles JOB.json
+blender -b --factory-startup FILE --python THIS -- show JOB.json
 blender -b --factory-startup --python THIS -- night NAME OUT.blend
 
-JOB: `camera`, `size`, `out` (PNG), `samples`, `bounces` (of diffuse light), `transparent`.
+JOB: `camera`, `size`, `out` (PNG), `samples`, `bounces` (of diffuse light), `transparent`; of show
+`pictures` (a PNG for each EXR).
 """
 
 import json
@@ -49,10 +51,20 @@ def cycles(job: dict) -> None:
     bpy.ops.render.render(write_still=True)
 
 
+def show(pictures: dict[str, str]) -> None:
+    scene = bpy.context.scene
+    format_ = scene.render.image_settings
+    format_.file_format, format_.color_mode, format_.color_depth = "PNG", "RGBA", "8"
+    for exr, png in pictures.items():
+        bpy.data.images.load(exr).save_render(png, scene=scene)
+
+
 def main() -> None:
     verb, *words = sys.argv[sys.argv.index("--") + 1 :]
     if verb == "cycles":
         cycles(json.loads(Path(words[0]).read_text("utf-8")))
+    elif verb == "show":
+        show(json.loads(Path(words[0]).read_text("utf-8"))["pictures"])
     else:
         name, out = words
         night_scenes.SCENES[name]()
