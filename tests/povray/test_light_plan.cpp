@@ -277,6 +277,9 @@ TEST_F(LightPlanTest, RoomsHaveTheirOwnLampsAndTheirFloorIsCut) {
     EXPECT_GE(report.lights_each, 1);
     const std::string text = read_file(options.folder / "scene.pov");
     EXPECT_GE(count_of(text, "clipped_by"), size_t{kRooms});
+    // One whole throws the floor's shadow.
+    EXPECT_EQ(count_of(text, " no_shadow clipped_by"), count_of(text, "clipped_by"));
+    EXPECT_EQ(count_of(text, " no_image no_reflection no_radiosity} // "), 1u);
     EXPECT_EQ(report.occurrences, 2u + kRooms);
 }
 

@@ -51,7 +51,8 @@ public:
         Affine closing;       // the map to the world when the shutter closes
         bool moving = false;  // a placement along it moves
     };
-    /// Whether anything but lenses is known along a path: below() is asked only then.
+    /// Whether anything but lenses is known along a path. Else below() returns its group's path, and
+    /// need not be asked.
     bool follows_paths() const { return view_.modifiers.when_moving; }
     FactorPath root();
     /// The path of a child, after `at` was asked for its group.

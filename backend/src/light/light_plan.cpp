@@ -236,7 +236,7 @@ LightPlan plan_lamps(const LitScene& scene, LitGrid& grid, std::span<const Light
     std::vector<uint8_t> divisible;
     for (uint32_t i = 0; i < drawn.size(); ++i) {
         const RepresentationSummary& summary = drawn[i].representation->summary;
-        // POV-Ray forgets flags of rays in clipped objects, and unions are not split then.
+        // POV-Ray forgets flags of rays in clipped unions, and does not split these.
         divisible.push_back(drawn[i].hidden == 0 && !is_copied(summary.kind) &&
                             !scene.partly_clear(i));
     }
