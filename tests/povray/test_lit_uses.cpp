@@ -18,6 +18,7 @@ OccurrenceUse use(uint32_t node, RayMask hidden = 0) {
 std::vector<LitUse> lit(const std::vector<OccurrenceUse>& uses,
                         const std::vector<light::LitPiece>& pieces) {
     std::vector<const OccurrenceUse*> drawn;
+    drawn.reserve(uses.size());
     for (const OccurrenceUse& one : uses)
         drawn.push_back(&one);
     light::LightPlan plan;
