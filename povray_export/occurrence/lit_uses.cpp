@@ -14,14 +14,14 @@ std::vector<LitUse> lit_uses(std::span<const OccurrenceUse* const> drawn,
         LitUse part{*drawn[piece.drawn], piece.within, piece.group};
         if (parts[piece.drawn] > 1)
             part.use.hidden |= kShadowRays;
-        out.push_back(std::move(part));
+        out.push_back(part);
     }
     for (size_t i = 0; i < drawn.size(); ++i) {
         if (parts[i] < 2 || (drawn[i]->hidden & kShadowRays) != 0)
             continue;
         LitUse whole{*drawn[i], {}};
         whole.use.hidden = kAllRays & static_cast<RayMask>(~kShadowRays);
-        out.push_back(std::move(whole));
+        out.push_back(whole);
     }
     return out;
 }
