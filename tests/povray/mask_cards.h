@@ -3,6 +3,7 @@
 #pragma once
 
 #include "povray/povray_scenes.h"
+#include "povray_export/mesh/mesh_cutting.h"
 
 #include <functional>
 
@@ -46,6 +47,19 @@ inline Mesh card(double times = 1) {
     for (const glm::vec3& at : mesh.positions)
         mesh.uvs.emplace_back(times * at.x, times * at.y);
     return mesh;
+}
+
+/// The mesh with its only material's mask cut out, as an export does it.
+inline CutMesh cut(const Mesh& mesh, const Material& material, std::optional<int> outline = {},
+                   bool coarse_crowds = true) {
+    scenes::Builder builder;
+    const ObjectIndex object = builder.mesh(mesh, {builder.material(material)});
+    MaskOutlines outlines;
+    RepresentationOptions options;
+    options.outline = outline;
+    options.coarse_crowds = coarse_crowds;
+    return cut_masks(builder.model, builder.model.objects[object].representations[0], options,
+                     outlines, {});
 }
 
 }  // namespace lodestone::povray

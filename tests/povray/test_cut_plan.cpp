@@ -1,26 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards how finely the masks of a crowd are outlined.
 #include "povray/mask_cards.h"
-#include "povray_export/mesh/mesh_cutting.h"
 
 using namespace lodestone;
 using namespace lodestone::povray;
-using scenes::Builder;
-
-namespace {
-
-CutMesh cut(const Mesh& mesh, const Material& material, std::optional<int> outline) {
-    Builder builder;
-    const ObjectIndex object = builder.mesh(mesh, {builder.material(material)});
-    MaskOutlines outlines;
-    RepresentationOptions options;
-    options.outline = outline;
-    options.coarse_crowds = true;
-    return cut_masks(builder.model, builder.model.objects[object].representations[0], options,
-                     outlines, {});
-}
-
-}  // namespace
 
 // Trees some pixels large became more triangles than the picture had pixels.
 TEST(CutPlan, ACrowdIsCutHalfAsFinely) {

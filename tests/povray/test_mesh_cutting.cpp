@@ -10,22 +10,6 @@ using namespace lodestone;
 using namespace lodestone::povray;
 using scenes::Builder;
 
-namespace {
-
-CutMesh cut(const Mesh& mesh, const Material& material, std::optional<int> outline = {},
-            bool coarse_crowds = true) {
-    Builder builder;
-    const ObjectIndex object = builder.mesh(mesh, {builder.material(material)});
-    MaskOutlines outlines;
-    RepresentationOptions options;
-    options.outline = outline;
-    options.coarse_crowds = coarse_crowds;
-    return cut_masks(builder.model, builder.model.objects[object].representations[0], options,
-                     outlines, {});
-}
-
-}  // namespace
-
 TEST(MeshCutting, WhatHasNoMaskIsNotCut) {
     EXPECT_FALSE(cut({}, leaf(disk())).any);
     EXPECT_FALSE(cut(shapes::quad(1, 1), leaf(disk())).any);  // no texture coordinates

@@ -13,11 +13,10 @@ Seconds are CPU of the whole process, without what opening the file takes. Level
 (the column says at which price); what earlier pictures found of the sky, masks and textures is not
 there, as in the first picture of a scene.
 
-Differences are the mean over covered pixels of the absolute
-difference of displayed values, 0...1, to Cycles with 256 samples and the same diffuse bounces, by
-which Cycles with 16 samples is judged, too; brightness is the ratio of the means. SSIM is that to
-our own full detail with 16 samples in every pixel. What is missing is skipped with a sentence; no
-number makes it fail.
+Differences are the mean over covered pixels of the absolute difference of displayed values, 0...1,
+to Cycles with 256 samples and the same diffuse bounces, by which Cycles with 16 samples is judged,
+too; brightness is the ratio of the means. SSIM is that to our own full detail with 16 samples in
+every pixel. What is missing is skipped with a sentence; no number makes it fail.
 """
 
 import argparse
@@ -28,8 +27,9 @@ import resource
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from types import ModuleType
 
 import numpy
 
@@ -64,14 +64,15 @@ class Missing(Exception):
     """What a view needs is not there; says what."""
 
 
+def children_cpu() -> float:
+    """CPU seconds of all processes that this one started and waited for, until now."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def cpu_of(command: list, log: Path, environment: dict | None = None) -> float:
     """CPU seconds of a command and all that it started and waited for. Raises Missing."""
-
-    def used() -> float:
-        one = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return one.ru_utime + one.ru_stime
-
-    before = used()
+    before = children_cpu()
     log.parent.mkdir(parents=True, exist_ok=True)
     with open(log, "wb") as out:
         done = subprocess.run(
@@ -81,7 +82,7 @@ def cpu_of(command: list, log: Path, environment: dict | None = None) -> float:
         )  # fmt: skip
     if done.returncode not in (0, 3):  # 3: incomplete, and named in the report
         raise Missing(f"{Path(str(command[0])).name} failed: {log}")
-    return used() - before
+    return children_cpu() - before
 
 
 class Scenes:
@@ -194,13 +195,18 @@ class View:
         return json.loads(report.read_text("utf-8")), cpu
 
     def drawn(self, name: str, pixel_error: float, *more: str) -> tuple[Path, dict, float]:
-        self.forget()
+        """A picture, as the first one of its scene, with its report and CPU."""
         picture = self.out / f"{name}.png"
-        words = ["--out", picture, "--pixel-error", pixel_error, *more]
+        return (picture, *self.seen("render", name, picture, pixel_error, *more))
+
+    def seen(self, verb: str, name: str, out: Path, pixel_error: float, *more: str) -> tuple:
+        """What batch() returns of a verb that looks through the camera, without earlier finds."""
+        self.forget()
+        words = ["--out", out, "--pixel-error", pixel_error, *more]
         words += ["--size", "x".join(map(str, self.options.size))]
         if self.camera:
             words += ["--camera", self.camera]
-        return (picture, *self.batch("render", name, *map(str, words)))
+        return self.batch(verb, name, *map(str, words))
 
     def measure(self) -> dict:
         """All numbers of the view."""
@@ -294,10 +300,13 @@ def table(found: dict[str, dict]) -> list[str]:
     return lines
 
 
-def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+def options_of(
+    arguments: list[str] | None = None, about: str = __doc__, errors: tuple[float, ...] = (0, 1, 4)
+) -> argparse.Namespace:
+    """The options of a bench of views; `errors`: its Pixel Errors where none are asked for."""
+    parser = argparse.ArgumentParser(description=about.splitlines()[0])
     parser.add_argument("--views", nargs="+", default=list(DEFAULT), metavar="SCENE/CAMERA")
-    parser.add_argument("--pixel-errors", nargs="+", type=float, default=[0.0, 1.0, 4.0])
+    parser.add_argument("--pixel-errors", nargs="+", type=float, default=list(errors))
     parser.add_argument("--size", nargs=2, type=int, default=[320, 180], metavar=("W", "H"))
     parser.add_argument("--cache", type=Path, default=CACHE)
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "bench" / "real")
@@ -311,32 +320,49 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     return options
 
 
-def main() -> None:
-    options = options_of()
-    if not ADDON.is_dir():
-        sys.exit("bench_real.py: build first (cmake --build --preset release)")
-    sys.path.insert(0, str(ADDON))
-    import lodestone_native as native
-
-    options.native, options.empty = native, native.povray_empty_bytes(*options.size)
+def measured(
+    options: argparse.Namespace, kept: str, measure: Callable[[str, Scenes], dict],
+    table_of: Callable[[dict], list[str]],
+) -> dict[str, dict]:  # fmt: skip
+    """What `measure` finds of all views that are asked for, kept in a file of the bench's folder
+    after each; a view of which something is missing is named and left out."""
     options.out.mkdir(parents=True, exist_ok=True)
-    known = options.out / "views.json"
+    known = options.out / kept
     found: dict[str, dict] = {}
     if options.resume and known.is_file():
         found = json.loads(known.read_text("utf-8"))
-    busy = benching.load()
     scenes = Scenes(options.cache)
     for name in options.views:
         if name in found:
             continue
         try:
-            found[name] = View(name, scenes, options).measure()
+            found[name] = measure(name, scenes)
         except Missing as error:
-            print(f"bench_real.py: {name} is skipped: {error}", file=sys.stderr)
+            print(f"{Path(sys.argv[0]).name}: {name} is skipped: {error}", file=sys.stderr)
             continue
         known.write_text(json.dumps(found, indent=1), "utf-8")
-        print(table({name: found[name]})[2], flush=True)
-    shown = {name: found[name] for name in options.views if name in found}
+        print(*table_of({name: found[name]})[2:3], flush=True)
+    return {name: found[name] for name in options.views if name in found}
+
+
+def staged_native() -> ModuleType:
+    """The binding of the built add-on. Exits where there is none."""
+    if not ADDON.is_dir():
+        sys.exit("build first (cmake --build --preset release)")
+    sys.path.insert(0, str(ADDON))
+    import lodestone_native as native
+
+    return native
+
+
+def main() -> None:
+    options = options_of()
+    options.native = staged_native()
+    options.empty = options.native.povray_empty_bytes(*options.size)
+    busy = benching.load()
+    shown = measured(
+        options, "views.json", lambda name, scenes: View(name, scenes, options).measure(), table
+    )
     told = benching.Told()
     told.tell(f"{options.size[0]} x {options.size[1]}, Cycles with {SAMPLES} samples.\n")
     told.tell("\n".join(table(shown)))

@@ -13,10 +13,8 @@ full detail with 16 samples in every pixel; where all take longer, the fastest. 
 fail.
 """
 
-import argparse
 import json
 import re
-import resource
 import shutil
 import sys
 from pathlib import Path
@@ -30,21 +28,20 @@ AREA_SAMPLES = (1, 3, 5)
 FILTER_SIZE = 1.5  # Blender's own, which the scenes have
 
 
-class Sampling(NamedTuple):
+class RivalSampling(NamedTuple):
     word: str
     threshold: float  # 0: no antialiasing
     depth: int
 
 
-SAMPLINGS = (Sampling("off", 0, 1), Sampling("0.4, 2 x 2", 0.4, 2), Sampling("0.1, 3 x 3", 0.1, 3))
+SAMPLINGS = (
+    RivalSampling("off", 0, 1),
+    RivalSampling("0.4, 2 x 2", 0.4, 2),
+    RivalSampling("0.1, 3 x 3", 0.1, 3),
+)
 
 
-def children_cpu() -> float:
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def sampled(ini: str, sampling: Sampling) -> str:
+def sampled(ini: str, sampling: RivalSampling) -> str:
     """The text of scene.ini with another antialiasing."""
     kept = [line for line in ini.splitlines() if not re.match("Antialias|Sampling_Method", line)]
     if sampling.threshold == 0:
@@ -77,17 +74,14 @@ class RivalView(bench_real.View):
         drawn = {}
         for area in AREA_SAMPLES:
             folder = self.out / f"rival_{area}"
-            words = ["--out", folder, "--pixel-error", 0, "--antialias", "final"]
-            words += ["--area-samples", area, "--size", "x".join(map(str, self.options.size))]
-            words += ["--camera", self.camera] if self.camera else []
-            self.forget()
             shutil.rmtree(folder, ignore_errors=True)
-            _, export = self.batch("export", f"rival_{area}", *map(str, words))
+            more = ("--antialias", "final", "--area-samples", str(area))
+            _, export = self.seen("export", folder.name, folder, 0, *more)
             ini = (folder / "scene.ini").read_text("utf-8")
             for sampling in SAMPLINGS:
-                before = children_cpu()
+                before = bench_real.children_cpu()
                 exr = self._trace(folder, ini, sampling)
-                cpu = export - opening + children_cpu() - before
+                cpu = export - opening + bench_real.children_cpu() - before
                 drawn[str(exr)] = str(exr.with_suffix(".png"))
                 found["rival"].append(
                     {"antialias": sampling.word, "area_samples": area, "cpu_s": cpu,
@@ -98,7 +92,7 @@ class RivalView(bench_real.View):
             one["ssim"] = ssim(Path(one.pop("picture")))
         return found
 
-    def _trace(self, folder: Path, ini: str, sampling: Sampling) -> Path:
+    def _trace(self, folder: Path, ini: str, sampling: RivalSampling) -> Path:
         """The folder's picture by POV-Ray, as it computes it."""
         native = self.options.native
         (folder / "scene.ini").write_text(sampled(ini, sampling), "utf-8")
@@ -156,34 +150,13 @@ def table(found: dict[str, dict]) -> list[str]:
 
 
 def main() -> None:
-    words = sys.argv[1:]
-    if "--pixel-errors" not in words:
-        words += ["--pixel-errors", "1", "2", "4", "8"]
-    options: argparse.Namespace = bench_real.options_of(words)
-    if not bench_real.ADDON.is_dir():
-        sys.exit("bench_rival.py: build first (cmake --build --preset release)")
-    sys.path.insert(0, str(bench_real.ADDON))
-    import lodestone_native as native
-
-    options.native = native
-    options.out.mkdir(parents=True, exist_ok=True)
-    known = options.out / "rival.json"
-    found: dict[str, dict] = {}
-    if options.resume and known.is_file():
-        found = json.loads(known.read_text("utf-8"))
+    options = bench_real.options_of(about=__doc__, errors=(1, 2, 4, 8))
+    options.native = bench_real.staged_native()
     busy = benching.load()
-    scenes = bench_real.Scenes(options.cache)
-    for name in options.views:
-        if name in found:
-            continue
-        try:
-            found[name] = RivalView(name, scenes, options).measure_rival()
-        except bench_real.Missing as error:
-            print(f"bench_rival.py: {name} is skipped: {error}", file=sys.stderr)
-            continue
-        known.write_text(json.dumps(found, indent=1), "utf-8")
-        print("\n".join(table({name: found[name]})), flush=True)
-    shown = {name: found[name] for name in options.views if name in found}
+    shown = bench_real.measured(
+        options, "rival.json",
+        lambda name, scenes: RivalView(name, scenes, options).measure_rival(), table,
+    )  # fmt: skip
     told = benching.Told()
     told.tell(f"{options.size[0]} x {options.size[1]}.\n")
     told.tell("\n".join(table(shown)))
