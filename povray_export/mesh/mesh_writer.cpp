@@ -29,8 +29,8 @@ constexpr double kUvPrecision = 5e-6;
 // Fitted: 1,500 bodies in POV-Ray take as long at 16 triangles (0.28 CPU s), at 32 they take 0.38
 // instead of 0.33.
 constexpr size_t kFew = 16;
-// So are meshes of up to this many triangles whose boxes are large, as in steep cones: a
-// ray through the mesh's box meets most boxes anyhow.
+// So are meshes of up to this many triangles whose boxes are large, as in steep cones: a ray
+// through the mesh's box meets most boxes anyhow.
 // Fitted: steep cones of 24 to 96 triangles take 0.73 of the time without a tree.
 constexpr size_t kMostInLargeBoxes = 96;
 // The mean share of a triangle's box in the mesh's, as areas, from which a box is large.

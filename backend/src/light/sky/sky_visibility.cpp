@@ -32,7 +32,7 @@ constexpr double kStep = 0.1;
 constexpr double kLongShare = 0.25;
 // Closed meshes of up to so many triangles stay as they are: POV-Ray lets light through the edges
 // of finer walls.
-// Law: the meshes that the writer for POV-Ray writes without a tree.
+// Law: the writer for POV-Ray writes all meshes of so few triangles without a tree.
 constexpr size_t kFew = 16;
 // The share of an edge's length in its triangle's longest from which it is split with it.
 // Taste: a smaller value makes more triangles, a larger one thinner ones.
