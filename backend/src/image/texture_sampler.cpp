@@ -23,11 +23,13 @@ PictureFormat format_of(std::string_view bytes) {
 
 /// The texel of a row of `size` texels that is looked up; -1: outside, clipped.
 int64_t wrapped(int64_t at, int64_t size, TextureExtension extension) {
+    if (at >= 0 && at < size)
+        return at;
     switch (extension) {
         case TextureExtension::Extend:
             return std::clamp<int64_t>(at, 0, size - 1);
         case TextureExtension::Clip:
-            return at >= 0 && at < size ? at : -1;
+            return -1;
         case TextureExtension::Mirror: {
             const int64_t twice = ((at % (2 * size)) + 2 * size) % (2 * size);
             return twice < size ? twice : 2 * size - 1 - twice;
@@ -137,6 +139,10 @@ glm::dvec4 TextureSampler::texel(glm::dvec2 uv) const {
     const double y = (1 - at.y) * height - shift;
     const double left = std::floor(x);
     const double top = std::floor(y);
+    const int64_t columns[] = {wrapped(static_cast<int64_t>(left), width, texture_.extension),
+                               wrapped(static_cast<int64_t>(left) + 1, width, texture_.extension)};
+    const int64_t rows[] = {wrapped(static_cast<int64_t>(top), height, texture_.extension),
+                            wrapped(static_cast<int64_t>(top) + 1, height, texture_.extension)};
     glm::dvec4 sum(0.0);
     for (int corner = 0; corner < (closest ? 1 : 4); ++corner) {
         const int right = corner & 1;
@@ -144,9 +150,8 @@ glm::dvec4 TextureSampler::texel(glm::dvec2 uv) const {
         const double weight =
             closest ? 1.0
                     : (right != 0 ? x - left : left + 1 - x) * (low != 0 ? y - top : top + 1 - y);
-        const int64_t column =
-            wrapped(static_cast<int64_t>(left) + right, width, texture_.extension);
-        const int64_t row = wrapped(static_cast<int64_t>(top) + low, height, texture_.extension);
+        const int64_t column = columns[right];
+        const int64_t row = rows[low];
         if (column < 0 || row < 0)
             continue;
         sum += weight * this->at(static_cast<int>(column), static_cast<int>(row));
