@@ -4,10 +4,9 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "choose/criterion.h"
-#include "choose/off_screen.h"
 #include "choose/view_pyramid.h"
 #include "geometry/part_tree.h"
-#include "light/seen/shadow_suns.h"
+#include "light/seen/shadow_reaches.h"
 #include "light/seen/sight_scene.h"
 #include "measure/visible/convex_bound.h"
 
@@ -34,17 +33,17 @@ constexpr double kPartWidth = 6;
 // where all parts together would have more than the most.
 // Taste: more find parts of which less is seen.
 constexpr int kAims = 8;
-constexpr int kShadowAims = 4;         // Taste: as kAims
+constexpr int kShadowAims = 4;  // Taste: as kAims
+// The pixels of which a part that is seen is missed by a ray through each in one of e cases.
+// Law: rays that meet an eighth of it.
+constexpr double kOftenMissed = 8;
 constexpr size_t kMostAims = 1 << 21;  // Taste: some seconds
 // The mirrors in a row that a ray follows.
 // Taste: more find things deeper in mirrors.
 constexpr int kMostMirrors = 4;
-// The suns that a ray looks for from each place: the strongest, and others by chance.
-// Taste: more tell better what throws faint shadows.
-constexpr size_t kSunsOfPlace = 2;
-// The tests of things against lamps, beyond which everything throws shadows.
+// The tests of places and things against lights, beyond which everything throws shadows.
 // Taste: a second or so.
-constexpr double kMostLampTests = 4e6;
+constexpr double kMostLightTests = 1e8;
 
 /// The least of some sizes, from any thread.
 class LeastSize {
@@ -80,11 +79,12 @@ public:
             first_.push_back(first_.back() + scene_.mesh(i).triangles.size());
         needs_.resize(first_.back(), 0);
         spacing_ = std::sqrt(static_cast<double>(view.width) * view.height / SeenParts::rays(view));
-        suns_ = shadow_suns(lights);
-        for (const Light& light : lights) {
-            if (choose::casts_shadows(light) && light.kind != LightKind::Sun)
-                lamps_.push_back(&light);
-        }
+        lights_ = shadow_lights(lights);
+        const double places = SeenParts::rays(view) + static_cast<double>(drawn.size());
+        all_shade_ = static_cast<double>(lights_.size()) * places > kMostLightTests;
+        if (all_shade_)
+            lights_.clear();
+        reaches_.emplace(model, drawn, view, lights_, job);
     }
 
     /// False: not everything that is needed can be told.
@@ -99,7 +99,7 @@ public:
             return false;
         spread(kShades);
         aim_shadows();
-        shade_by_lamps();
+        shade_all();
         return true;
     }
 
@@ -123,18 +123,19 @@ private:
             job_.check();
             const ray::FlushDenormals fast;
             PcgRandom random(3, row);
+            LightPicker picker(lights_);
             for (size_t column = 0; column < columns; ++column) {
                 const double x =
                     (static_cast<double>(column) + random.uniform()) / static_cast<double>(columns);
                 const double y =
                     (static_cast<double>(row) + random.uniform()) / static_cast<double>(rows);
-                follow(sight_ray(view_, x, y), random);
+                follow(sight_ray(view_, x, y), picker, random);
             }
         });
     }
 
     /// Notes what a ray meets, in mirrors too.
-    void follow(const SightRay& ray, PcgRandom& random) {
+    void follow(const SightRay& ray, LightPicker& picker, PcgRandom& random) {
         SightWalk walk{ray.origin, ray.direction};
         SightCrossing at;
         int mirrors = 0;
@@ -146,7 +147,7 @@ private:
                 sight_normals(scene_.mesh(at.drawn), drawn_[at.drawn].world, at.triangle, at.u,
                               at.v, walk.direction);
             if (normals.any)
-                shade(at, normals, random);
+                shade(at, normals, picker, random);
             // Some rays go on through what is half clear, and some are mirrored.
             if (!at.ends && !(at.mirrors && random.uniform() < 0.5))
                 continue;
@@ -162,26 +163,27 @@ private:
         }
     }
 
-    /// Notes what hides suns from a place that is seen: the strongest, and one of the others.
-    void shade(const SightCrossing& place, const SightNormals& normals, PcgRandom& random) {
-        const size_t count = std::min(suns_.size(), kSunsOfPlace);
+    /// Notes what hides lights from a place that is seen.
+    void shade(const SightCrossing& place, const SightNormals& normals, LightPicker& picker,
+               PcgRandom& random) {
         const double pixel = choose::pixel_size(view_, place.way);
-        for (size_t i = 0; i < count; ++i) {
-            const double others = static_cast<double>(suns_.size() - i);
-            const size_t chance = i + static_cast<size_t>(random.uniform() * others);
-            const ShadowSun& sun = suns_[i == 0 ? 0 : std::min(chance, suns_.size() - 1)];
+        for (const uint32_t number : picker.pick({place.point, normals.smooth}, {}, random)) {
+            const WayToLight way = way_to(lights_[number], place.point, random);
             SightWalk walk;
-            walk.direction = way_to(sun, random);
+            walk.direction = way.direction;
             const double side = glm::dot(walk.direction, normals.flat) < 0 ? -1 : 1;
             if (side < 0 && !(glm::dot(walk.direction, normals.smooth) > 0))
                 continue;
             walk.origin = place.point + side * scene_.aside(place.way) * normals.flat;
             walk.sees = kShadowRays;
             walk.way = place.way;
+            walk.far = way.length;
             SightCrossing at;
             while (scene_.step(walk, at)) {
                 note(at.drawn, at.triangle, kShades);
-                shadow_pixels_[at.drawn].note(pixel);
+                // The shadow of a lamp is as much larger as it falls farther from the lamp.
+                const double left = (way.length - (at.way - place.way)) / way.length;
+                shadow_pixels_[at.drawn].note(lights_[number].sun ? pixel : left * pixel);
                 if (at.ends)
                     break;
             }
@@ -294,6 +296,28 @@ private:
                                                    static_cast<size_t>(wanted)));
     }
 
+    /// The rays toward a part that no ray met, at most `most`: parts that are large in the picture
+    /// are met where any of them is seen.
+    int aims_at(uint32_t drawn, std::span<const uint32_t> triangles, const Bound& bound,
+                int most) const {
+        const Mesh& mesh = scene_.mesh(drawn);
+        const glm::dmat3& linear = drawn_[drawn].world.linear;
+        double area = 0;
+        for (const uint32_t triangle : triangles) {
+            const Triangle& t = mesh.triangles[triangle];
+            const glm::dvec3 a(mesh.positions[t.x]);
+            const glm::dvec3 u = linear * (glm::dvec3(mesh.positions[t.y]) - a);
+            const glm::dvec3 v = linear * (glm::dvec3(mesh.positions[t.z]) - a);
+            area += glm::length(glm::cross(u, v)) / 2;
+        }
+        const double cell =
+            spacing_ * choose::pixel_size(view_, distance(bound, view_.camera.position));
+        // Law: a surface that is turned anyhow shows half of itself.
+        const double cells = area / (2 * cell * cell);
+        const double missed = std::exp(-cells / kOftenMissed);
+        return missed >= 0 ? std::max(1, static_cast<int>(std::ceil(most * missed))) : most;
+    }
+
     /// Looks at the parts that no ray through the picture met.
     void aim() {
         const auto needs_look = [&](uint32_t drawn, std::span<const uint32_t> triangles,
@@ -308,14 +332,16 @@ private:
             job_.check();
             const ray::FlushDenormals fast;
             PcgRandom random(4, i);
+            LightPicker picker(lights_);
             visit_parts(
                 drawn, [&](const Bound& bound) { return seen_width(bound); },
                 [&](std::span<const uint32_t> triangles, const Bound& bound) {
                     job_.check();
                     if (!needs_look(drawn, triangles, bound))
                         return;
-                    for (int k = 0; k < aims; ++k) {
-                        if (sees(drawn, one_of(triangles, random), random)) {
+                    const int tries = aims_at(drawn, triangles, bound, aims);
+                    for (int k = 0; k < tries; ++k) {
+                        if (sees(drawn, one_of(triangles, random), picker, random)) {
                             note_all(drawn, triangles, kSeen);
                             return;
                         }
@@ -325,7 +351,7 @@ private:
     }
 
     /// Whether the eye sees a random place of a triangle, whose shadows are noted then.
-    bool sees(uint32_t drawn, uint32_t triangle, PcgRandom& random) {
+    bool sees(uint32_t drawn, uint32_t triangle, LightPicker& picker, PcgRandom& random) {
         std::optional<SightWalk> walk = walk_to(point_on(drawn, triangle, random));
         if (!walk)
             return false;
@@ -338,7 +364,7 @@ private:
                 const SightNormals normals = sight_normals(scene_.mesh(drawn), drawn_[drawn].world,
                                                            triangle, at.u, at.v, walk->direction);
                 if (normals.any)
-                    shade(at, normals, random);
+                    shade(at, normals, picker, random);
                 return true;
             }
             if (at.ends)
@@ -347,21 +373,20 @@ private:
         return false;
     }
 
-    /// Looks where the shadows fall of parts that no ray to a sun met.
+    /// Looks where the shadows fall of parts that no ray to a light met.
     void aim_shadows() {
-        if (suns_.empty() || model_.root >= model_.objects.size())
-            return;
-        const Box3 all = model_.objects[model_.root].bound().box;
-        const int aims =
-            aims_of(kShadowAims, [&](uint32_t drawn, std::span<const uint32_t> triangles,
-                                     const Bound&) { return !any(drawn, triangles, kShades); });
+        const int aims = aims_of(
+            kShadowAims, [&](uint32_t drawn, std::span<const uint32_t> triangles, const Bound&) {
+                return !reaches_->of(drawn).empty() && !any(drawn, triangles, kShades);
+            });
         parallel_for(drawn_.size(), [&](size_t i) {
             const auto drawn = static_cast<uint32_t>(i);
-            if ((drawn_[i].hidden & kShadowRays) != 0 || !finite(drawn_[i]))
+            if (reaches_->of(i).empty())
                 return;
             job_.check();
             const ray::FlushDenormals fast;
             PcgRandom random(5, i);
+            LightPicker picker(lights_);
             visit_parts(
                 drawn, [&](const Bound& bound) { return seen_width(bound); },
                 [&](std::span<const uint32_t> triangles, const Bound& bound) {
@@ -371,14 +396,15 @@ private:
                         note_all(drawn, triangles, kShades);
                         return;
                     }
-                    for (size_t k = 0; k < std::min(suns_.size(), kSunsOfPlace); ++k) {
-                        if (!choose::shadow_reach(*suns_[k].light, bound, &pyramid_, all,
-                                                  view_.camera.position)
-                                 .seen)
+                    const int tries = aims_at(drawn, triangles, bound, aims);
+                    for (const uint32_t number :
+                         picker.pick({bound.center}, reaches_->of(drawn), random)) {
+                        const ShadowLight& light = lights_[number];
+                        if (!reaches_->seen(number, bound))
                             continue;
-                        for (int aim = 0; aim < aims; ++aim) {
+                        for (int aim = 0; aim < tries; ++aim) {
                             const uint32_t triangle = one_of(triangles, random);
-                            if (shows_shadow(point_on(drawn, triangle, random), suns_[k], random)) {
+                            if (shows_shadow(point_on(drawn, triangle, random), light, random)) {
                                 note_all(drawn, triangles, kShades);
                                 return;
                             }
@@ -389,14 +415,17 @@ private:
     }
 
     /// Whether the eye sees anything that lies in the shadow of a point.
-    bool shows_shadow(const glm::dvec3& point, const ShadowSun& sun, PcgRandom& random) const {
+    bool shows_shadow(const glm::dvec3& point, const ShadowLight& light, PcgRandom& random) {
         SightWalk down;
-        down.direction = -way_to(sun, random);
+        down.direction = -way_to(light, point, random).direction;
         const double way = glm::length(point - view_.camera.position);
         down.origin = point + scene_.aside(way) * down.direction;
         SightCrossing at;
         while (scene_.step(down, at)) {
-            if (std::optional<SightWalk> walk = walk_to(at.point)) {
+            const bool seen =
+                (needs_of(at.drawn, at.triangle).load(std::memory_order_relaxed) & kSeen) != 0;
+            std::optional<SightWalk> walk = seen ? walk_to(at.point) : std::nullopt;
+            if (walk) {
                 walk->far -= 2 * scene_.aside(walk->far);
                 SightCrossing before;
                 bool hidden = false;
@@ -411,25 +440,13 @@ private:
         return false;
     }
 
-    /// Lets a thing be needed as a whole where its shadow by a lamp may be seen.
-    void shade_by_lamps() {
-        if (lamps_.empty())
+    /// Where there are too many lights to look for, lets each thing be needed as a whole.
+    void shade_all() {
+        if (!all_shade_)
             return;
-        const bool many = static_cast<double>(lamps_.size()) * static_cast<double>(drawn_.size()) >
-                          kMostLampTests;
-        const Box3 all =
-            model_.root < model_.objects.size() ? model_.objects[model_.root].bound().box : Box3();
         parallel_for(drawn_.size(), [&](size_t i) {
-            if ((drawn_[i].hidden & kShadowRays) != 0)
-                return;
-            const Bound bound =
-                transformed(drawn_[i].representation->summary.bound, drawn_[i].world);
-            const bool shades =
-                many || std::any_of(lamps_.begin(), lamps_.end(), [&](const Light* lamp) {
-                    return choose::shadow_reach(*lamp, bound, &pyramid_, all, view_.camera.position)
-                        .seen;
-                });
-            for (size_t k = first_[i]; shades && k < first_[i + 1]; ++k)
+            for (size_t k = first_[i]; (drawn_[i].hidden & kShadowRays) == 0 && k < first_[i + 1];
+                 ++k)
                 needs_[k] |= kShades;
         });
     }
@@ -444,8 +461,9 @@ private:
     choose::ViewPyramid pyramid_;
     glm::dmat3 to_frame_;
     double spacing_ = 1;  // of rays through the picture, in pixels
-    std::vector<ShadowSun> suns_;
-    std::vector<const Light*> lamps_;
+    std::vector<ShadowLight> lights_;
+    bool all_shade_ = false;  // there are too many lights to look for
+    std::optional<ShadowReaches> reaches_;
     std::vector<size_t> first_;
     std::vector<uint8_t> needs_;
     std::vector<LeastSize> shadow_pixels_;  // by drawn thing: of a pixel where its shadow is seen

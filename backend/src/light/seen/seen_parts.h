@@ -16,15 +16,15 @@ inline constexpr uint8_t kSeen = 1;
 inline constexpr uint8_t kShades = 2;
 
 /// The parts of drawn things that a picture needs, found by rays: through the picture, from what
-/// these meet to suns, and toward what they did not meet. Parts are groups of neighboring triangles
+/// these meet to lights, and toward what they did not meet. Parts are groups of neighboring triangles
 /// some pixels wide, and a part counts as a whole. So what is not needed changes less than a pixel,
 /// here and there.
 class SeenParts {
 public:
     /// Model, drawn things and view as for plan_lights(); `lights`: all that may throw shadows.
-    /// Lamps count by where their shadows can be at all. Throws Error(RaysUnavailable),
+    /// Of very many, everything throws some. Throws Error(RaysUnavailable),
     /// Error(BadFile), Error(Cancelled). The result does not depend on the number of threads.
-    /// cost: rays(view) rays through the picture, to one or two suns from each; a tree of boxes
+    /// cost: rays(view) rays through the picture, to one or two lights from each; a tree of boxes
     /// for each mesh.
     SeenParts(const Model& model, const RendererSurfaces& renderer,
               std::span<const DrawnThing> drawn, const View& view, std::span<const Light> lights,

@@ -241,6 +241,50 @@ TEST_F(SeenPartsTest, LampsShadeByWhereTheirShadowsCanBe) {
     EXPECT_EQ(needs(above), 0);
 }
 
+// A forest with a lantern was written as a whole: the lantern's shadows could be anywhere.
+TEST_F(SeenPartsTest, WhatALampMayShadeBehindAWallWasNeeded) {
+    Light lamp;
+    lamp.kind = LightKind::Point;
+    lamp.position = {5, 0, 4};
+    model_.lights = {lamp};
+    add({10, 0, -2}, {30, 30, 0.1});
+    add({12, 0, 10}, {0.1, 60, 60});
+    const size_t before = add({8, 0, 3}, {0.5, 0.5, 0.5});
+    std::vector<size_t> behind;
+    for (int i = 0; i < 20; ++i)
+        behind.push_back(add({16, i - 10.0, 0}, {0.5, 0.5, 0.5}));
+    const SeenParts found = parts();
+    EXPECT_NE(found.needs(before) & kShades, 0);
+    for (const size_t tree : behind)
+        EXPECT_EQ(found.needs(tree), 0);
+}
+
+TEST_F(SeenPartsTest, ThinShadowsOfFarLampsAreFound) {
+    Light lamp;
+    lamp.kind = LightKind::Point;
+    lamp.position = {8, 0, 2};
+    add({10, 0, -2}, {30, 30, 0.1});
+    for (int i = 0; i < 40; ++i) {
+        lamp.position.y = i - 20.0;
+        model_.lights.push_back(lamp);
+    }
+    const size_t grate = add({0, 0, 0}, {0.5, 0.5, 0.5});  // behind the eye
+    things_[grate].place = {8, 0, 40};                     // over all lamps
+    const size_t lid = add({8, 0, 1}, {0.3, 60, 0.1}, {}, kCameraRays);
+    const SeenParts found = parts();
+    EXPECT_EQ(found.needs(grate), 0);
+    EXPECT_EQ(found.needs(lid), kShades);
+}
+
+TEST_F(SeenPartsTest, OfTooManyLightsEverythingThrowsShadows) {
+    model_.lights.assign(60'000, sun({0, 0, -1}));
+    add({10, 0, 0}, {1, 1, 1});
+    const size_t behind_the_eye = add({-10, 0, 0}, {1, 1, 1});
+    EXPECT_EQ(needs(behind_the_eye), kShades);
+    model_.lights.resize(2);
+    EXPECT_EQ(needs(behind_the_eye), 0);
+}
+
 TEST_F(SeenPartsTest, OrthographicPicturesShowWhatIsBeforeThem) {
     view_.camera.orthographic = true;
     view_.camera.right = {0, -10, 0};
