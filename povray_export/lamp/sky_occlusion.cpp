@@ -19,7 +19,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 9;
+constexpr uint32_t kBakeVersion = 10;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -44,8 +44,7 @@ public:
           options_(options),
           job_(job),
           bakes_(options.file, kSkyVersion),
-          all_(model, cut, options.most_triangles, job),
-          rays_(options.rays, all_.distinct_triangles()) {}
+          all_(model, cut, options.most_triangles, job) {}
 
     /// The reason why there is none; "" when lights() are found.
     std::string run() {
@@ -77,6 +76,7 @@ private:
         const Representation* original = nullptr;  // the finest level; null: it is that
         /// By triangle, 1: any of the things shows it. Empty: all count as shown.
         std::vector<uint8_t> seen;
+        int rays = 0;                                   // of a corner
         std::shared_ptr<const light::SkyShares> found;  // of as many or fewer until it is baked
     };
     /// A request for the means of all placements of one finest level, or of one stand-in.
@@ -92,7 +92,7 @@ private:
         Hasher hasher;
         const RepresentationSummary& summary = thing.representation->summary;
         const SkyThing* placed = once ? &thing : nullptr;
-        hasher.value(kBakeVersion).value(options_.rays).value(rays_.of(summary.cost.triangles));
+        hasher.value(kBakeVersion).value(options_.rays);
         hasher.value(summary.hash).value(all_.finest_of(thing).summary.hash);
         hasher.value(summary.cost.triangles);
         if (placed != nullptr) {
@@ -118,6 +118,7 @@ private:
             if (!once && !thing.moves)
                 want_means(i);
         }
+        choose_rays();
         for (auto& [key, wanted] : wanted_shares_)
             find_shares(key, wanted);
         for (uint32_t i = 0; i < numbers_.size(); ++i) {
@@ -164,22 +165,43 @@ private:
         }
     }
 
+    /// The triangles of a surface that count as seen.
+    static uint64_t seen_of(const WantedShares& wanted) {
+        return wanted.seen.empty() ? wanted.representation->summary.cost.triangles
+                                   : static_cast<uint64_t>(std::count(
+                                         wanted.seen.begin(), wanted.seen.end(), uint8_t{1}));
+    }
+
+    /// Chooses the rays of all surfaces by what is seen of them.
+    void choose_rays() {
+        std::vector<uint64_t> counts;
+        counts.reserve(wanted_shares_.size());
+        for (auto& [key, wanted] : wanted_shares_) {
+            if (static_cast<double>(seen_of(wanted)) >
+                kMostSeen * static_cast<double>(wanted.seen.size()))
+                wanted.seen.clear();
+            counts.push_back(seen_of(wanted));
+        }
+        const CornerRays rays(options_.rays, counts, options_.pixels);
+        for (auto& [key, wanted] : wanted_shares_)
+            wanted.rays = rays.of(seen_of(wanted));
+    }
+
     /// Finds what was kept, or lists what is to be found: the shares of what the picture shows, and
     /// once another picture shows more those of all, so that many pictures do not begin anew.
     void find_shares(Hash key, WantedShares& wanted) {
-        const auto count = std::count(wanted.seen.begin(), wanted.seen.end(), uint8_t{1});
-        if (static_cast<double>(count) > kMostSeen * static_cast<double>(wanted.seen.size()))
-            wanted.seen.clear();
         if (const auto bytes = bakes_.find(key)) {
             auto found =
                 light::SkyShares::of_bytes(*bytes, wanted.representation->summary.cost.triangles);
             if (found && fits(*wanted.representation, *found))
                 wanted.found = std::make_shared<const light::SkyShares>(std::move(*found));
         }
-        if (wanted.found && light::covers(*wanted.found, wanted.seen))
+        const int found_rays = wanted.found ? static_cast<int>(wanted.found->rays) : 0;
+        if (wanted.found && found_rays >= wanted.rays && light::covers(*wanted.found, wanted.seen))
             return;
         if (wanted.found)
             wanted.seen.clear();
+        wanted.rays = std::clamp(found_rays, wanted.rays, std::max(options_.rays, wanted.rays));
         missing_.emplace_back(key, &wanted);
     }
 
@@ -268,11 +290,7 @@ private:
 
     /// The rays of a bake, about: two triangles have about one corner.
     uint64_t work_of(const WantedShares& wanted) const {
-        const uint64_t triangles = wanted.representation->summary.cost.triangles;
-        const auto seen =
-            static_cast<uint64_t>(std::count(wanted.seen.begin(), wanted.seen.end(), uint8_t{1}));
-        return 1 + static_cast<uint64_t>(rays_.of(triangles)) *
-                       (wanted.seen.empty() ? triangles : seen) / 2;
+        return 1 + static_cast<uint64_t>(wanted.rays) * seen_of(wanted) / 2;
     }
     uint64_t work_of_bake() const {
         uint64_t work = 1;
@@ -312,9 +330,8 @@ private:
     void bake_one(WantedShares& wanted, const light::SkySurface* original,
                   const light::SkySurfaces& surfaces, const light::SkyScene& scene) const {
         job_.check();
-        const int rays = rays_.of(wanted.representation->summary.cost.triangles);
         light::SkyRequest request{
-            surfaces.of(*wanted.representation), {}, nullptr, 0, rays, 0, options_.rays};
+            surfaces.of(*wanted.representation), {}, nullptr, 0, wanted.rays, 0, options_.rays};
         request.error = wanted.representation->summary.max_error;
         request.original = original;
         request.seen = wanted.seen;
@@ -433,7 +450,6 @@ private:
     const Job& job_;
     FindingsFile bakes_;
     SkyThings all_;
-    CornerRays rays_;
     std::vector<uint32_t> numbers_;  // by leaf
     std::map<Hash, WantedShares> wanted_shares_;
     std::map<std::pair<Hash, bool>, WantedMeans> wanted_means_;  // with: a stand-in
@@ -446,22 +462,6 @@ private:
 };
 
 }  // namespace
-
-double share_of_grade(uint8_t grade) {
-    const double root = static_cast<double>(grade) / (kSkyGrades - 1);
-    return root * root;
-}
-
-uint8_t grade_of_share(double share) {
-    return static_cast<uint8_t>(std::lround((kSkyGrades - 1) * std::sqrt(limited(share, 0, 1))));
-}
-
-uint8_t SkyLight::grade(size_t triangle, int corner) const {
-    if (!shares)
-        return grade_of_share(factor);
-    const uint8_t byte = shares->corners.at(3 * triangle + static_cast<size_t>(corner));
-    return grade_of_share(factor * light::share_of_byte(byte));
-}
 
 SkyOcclusion::SkyOcclusion(const Model& model, const choose::Cut& cut,
                            const SkyOcclusionOptions& options, Problems& problems, const Job& job)

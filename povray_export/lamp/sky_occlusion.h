@@ -5,7 +5,7 @@
 
 #include "base/job.h"
 #include "choose/cut.h"
-#include "light/sky/sky_visibility.h"
+#include "povray_export/lamp/sky_light.h"
 #include "povray_export/occurrence/picture_needs.h"
 
 #include <filesystem>
@@ -16,30 +16,14 @@
 
 namespace lodestone::povray {
 
-/// The grades of a mesh's corners.
-/// Taste: a larger value shows finer steps of shade, for a texture of each material and grade.
-inline constexpr int kSkyGrades = 32;
 /// The beginning of the file that keeps it.
 /// Law: another one is another format.
-inline constexpr std::string_view kSkyVersion = "LDSSKY01";
-/// The share of the sky's light that a grade stands for; grade kSkyGrades - 1 is all of it.
-double share_of_grade(uint8_t grade);
-uint8_t grade_of_share(double share);
-
-/// The share of the sky's light that one drawn thing answers to.
-struct SkyLight {
-    std::shared_ptr<const light::SkyShares> shares;  // null: `factor` alone
-    double factor = 1;                               // on all shares: what is around the thing
-    Hash hash = 0;                                   // of both
-
-    /// The grade of a corner of the split mesh.
-    uint8_t grade(size_t triangle, int corner) const;
-};
-using SkyLightPtr = std::shared_ptr<const SkyLight>;
+inline constexpr std::string_view kSkyVersion = "LDSSKY02";
 
 /// The choices for sky occlusion.
 struct SkyOcclusionOptions {
-    int rays = 128;  // that tell the share of a corner, of a scene that is not large
+    int rays = 128;             // that tell the share of a corner, of a scene that is not large
+    double pixels = kInfinity;  // of the picture: more triangles have fewer rays each
     /// The most distinct triangles of a scene that is looked through.
     /// Taste: a larger value shades larger scenes, for minutes and gigabytes.
     uint64_t most_triangles = 6'000'000;

@@ -134,14 +134,6 @@ const Representation& SkyThings::finest_of(const SkyThing& thing) const {
     return thing.group ? *thing.representation : finest_of(leaves_[thing.first]);
 }
 
-std::vector<uint64_t> SkyThings::distinct_triangles() const {
-    std::vector<uint64_t> out;
-    out.reserve(placed_.size());
-    for (const auto& [hash, mesh] : placed_)
-        out.push_back(mesh.triangles);
-    return out;
-}
-
 bool SkyThings::skipped(const SkyThing& thing) const {
     return thing.representation->summary.kind == Kind::Assembly || !thing.seen;
 }

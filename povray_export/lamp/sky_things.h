@@ -43,8 +43,6 @@ public:
     const std::vector<SkyLeaf>& leaves() const { return leaves_; }
     /// Those of the cut, by position in cut.chosen.
     const std::vector<SkyThing>& things() const { return things_; }
-    /// The triangles of each distinct finest level, in any order.
-    std::vector<uint64_t> distinct_triangles() const;
     /// The hash of all that hides the sky, and of where it does.
     Hash scene() const { return scene_; }
     /// How often a finest level is placed.

@@ -144,6 +144,7 @@ private:
         wanted.file = (options_.bakes.empty() ? options_.folder : options_.bakes) / kFile;
         wanted.load_finest = options_.load_finest;
         wanted.needs = &needs_;
+        wanted.pixels = static_cast<double>(view_.width) * view_.height;
         wanted.texels = renderer_.texels;
         const double thread_start = thread_cpu_seconds();
         const double process_start = cpu_seconds();

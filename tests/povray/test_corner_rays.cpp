@@ -18,3 +18,12 @@ TEST(CornerRays, LargeScenesHaveFewerRaysForEachCorner) {
     EXPECT_EQ(uneven.of(1'000'000), 16);
     EXPECT_EQ(uneven.of(100'000), 64);
 }
+
+// A forest far away had more rays to its sky than its picture had.
+TEST(CornerRays, MoreTrianglesThanPixelsHaveFewerRays) {
+    EXPECT_EQ(CornerRays(128, {50'000}, 57'600).of(50'000), 128);
+    EXPECT_EQ(CornerRays(128, {230'000}, 57'600).of(230'000), 32);
+    EXPECT_EQ(CornerRays(128, {230'000}, 1e9).of(230'000), 128);
+    EXPECT_EQ(CornerRays(128, {600'000}, 1e9).of(600'000), 64);
+    EXPECT_EQ(CornerRays(128, {230'000, 100}, 57'600).of(100), 128);
+}

@@ -51,6 +51,7 @@ double share_of_byte(uint8_t byte) {
 std::string SkyShares::bytes() const {
     std::string out;
     append_bytes(out, mean);
+    append_bytes(out, rays);
     append_bytes(out, static_cast<uint32_t>(seen.size()));
     out.append(reinterpret_cast<const char*>(seen.data()), seen.size());
     append_bytes(out, static_cast<uint32_t>(splits.size()));
@@ -69,8 +70,8 @@ std::optional<SkyShares> SkyShares::of_bytes(std::string_view bytes, size_t tria
     SkyShares out;
     uint32_t rounds = 0;
     uint32_t told = 0;
-    if (!reader.take(out.mean) || !(out.mean >= 0 && out.mean <= 1) || !reader.take(told) ||
-        (told != 0 && told != triangles) || told > reader.rest().size())
+    if (!reader.take(out.mean) || !(out.mean >= 0 && out.mean <= 1) || !reader.take(out.rays) ||
+        !reader.take(told) || (told != 0 && told != triangles) || told > reader.rest().size())
         return {};
     out.seen.resize(told);
     for (uint8_t& one : out.seen)

@@ -32,6 +32,7 @@ struct SkyShares {
     uint32_t long_rounds = 0;      // of the splits, the first: those of long edges
     std::vector<uint8_t> corners;  // 3 a triangle of the split mesh
     double mean = 1;               // of the whole surface
+    uint32_t rays = 0;             // that told the share of a corner, about
     /// By triangle of the mesh that was split, 1: its corners have all their rays. Empty: all have.
     std::vector<uint8_t> seen;
 

@@ -313,6 +313,7 @@ private:
         out.splits = std::move(splits_);
         out.long_rounds = static_cast<uint32_t>(long_rounds_);
         out.seen.assign(request_.seen.begin(), request_.seen.end());
+        out.rays = static_cast<uint32_t>(std::max(request_.rays, 0));
         std::unordered_map<CornerKey, uint32_t, CornerKeyHash> known;
         known.reserve(mesh.triangles.size());
         std::vector<uint32_t> groups(3 * mesh.triangles.size());

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/lamp/sky_light.h"
+
+#include "base/maths.h"
+
+#include <cmath>
+
+namespace lodestone::povray {
+
+double share_of_grade(uint8_t grade) {
+    const double root = static_cast<double>(grade) / (kSkyGrades - 1);
+    return root * root;
+}
+
+uint8_t grade_of_share(double share) {
+    return static_cast<uint8_t>(std::lround((kSkyGrades - 1) * std::sqrt(limited(share, 0, 1))));
+}
+
+uint8_t SkyLight::grade(size_t triangle, int corner) const {
+    if (!shares)
+        return grade_of_share(factor);
+    const uint8_t byte = shares->corners.at(3 * triangle + static_cast<size_t>(corner));
+    return grade_of_share(factor * light::share_of_byte(byte));
+}
+
+}  // namespace lodestone::povray

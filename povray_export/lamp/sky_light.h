@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sky light: the share of the sky's light that a drawn thing answers to, and the grades of it that
+// textures are written for.
+#pragma once
+
+#include "base/hash.h"
+#include "light/sky/sky_visibility.h"
+
+#include <memory>
+
+namespace lodestone::povray {
+
+/// The grades of a mesh's corners.
+/// Taste: a larger value shows finer steps of shade, for a texture of each material and grade.
+inline constexpr int kSkyGrades = 32;
+/// The share of the sky's light that a grade stands for; grade kSkyGrades - 1 is all of it.
+double share_of_grade(uint8_t grade);
+uint8_t grade_of_share(double share);
+
+/// The share of the sky's light that one drawn thing answers to.
+struct SkyLight {
+    std::shared_ptr<const light::SkyShares> shares;  // null: `factor` alone
+    double factor = 1;                               // on all shares: what is around the thing
+    Hash hash = 0;                                   // of both
+
+    /// The grade of a corner of the split mesh.
+    uint8_t grade(size_t triangle, int corner) const;
+};
+using SkyLightPtr = std::shared_ptr<const SkyLight>;
+
+}  // namespace lodestone::povray
