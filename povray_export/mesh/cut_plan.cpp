@@ -43,6 +43,12 @@ constexpr size_t kCrowd = 64;
 /// Taste: beside 1 a picture of trees is as near to full detail (SSIM less by 0.001 to 0.003); a
 /// larger value makes their outer branches blocky.
 constexpr double kOfCrowd = 2;
+/// The width of a triangle in a crowd, in its tolerances, up to which its pieces become one.
+/// Taste: triangles of four pixels at Pixel Error 1; a larger value makes leaves blocky.
+constexpr double kJoined = 2;
+/// The octaves of tolerances that are told apart.
+/// Law: a picture has no more texels along a side.
+constexpr int kMostOctaves = 16;
 
 }  // namespace
 
@@ -77,40 +83,35 @@ void CutPlan::collect_slots() {
     std::erase_if(slots_, [](const auto& slot) { return slot.second.triangles.empty(); });
 }
 
-/// The triangles of a slot by how finely they are seen.
+/// The triangles of a slot by how finely they are seen, and how stretched the picture lies on them.
 std::vector<CutBand> CutPlan::bands_of(const CutSlot& slot) const {
-    std::vector<CutBand> all(DetailBands::kMost + 1);
+    std::vector<CutBand> all(kMostOctaves + 1);
     for (const uint32_t triangle : slot.triangles) {
-        Box3 box;
-        for (int corner = 0; options_.bands && corner < 3; ++corner)
-            box.add(glm::dvec3(mesh_.positions[mesh_.triangles[triangle][corner]]));
-        const int octaves = options_.bands ? options_.bands->octaves(box) : 0;
-        all[static_cast<size_t>(octaves)].triangles.push_back(triangle);
+        const double tolerance = tolerance_of(*slot.material, triangle);
+        const int octave = std::ilogb(std::clamp(tolerance, 1.0, std::exp2(kMostOctaves)));
+        CutBand& band = all[static_cast<size_t>(octave)];
+        band.tolerance = band.triangles.empty() ? tolerance : std::min(band.tolerance, tolerance);
+        band.triangles.push_back(triangle);
     }
-    std::vector<CutBand> out;
-    for (size_t octaves = 0; octaves < all.size(); ++octaves) {
-        if (all[octaves].triangles.empty())
-            continue;
-        out.push_back(std::move(all[octaves]));
-        out.back().tolerance =
-            tolerance_of(*slot.material, out.back().triangles, std::exp2(octaves));
-    }
-    return out;
+    std::erase_if(all, [](const CutBand& band) { return band.triangles.empty(); });
+    return all;
 }
 
-/// The texels by which the outline of some triangles' mask may be off, where `times` as much as
-/// the options say is allowed.
-double CutPlan::tolerance_of(const Material& material, std::span<const uint32_t> triangles,
-                             double times) const {
-    // The share of the area that may see its outline less finely than asked.
-    // Taste: a larger value cuts more coarsely for single stretched triangles.
-    constexpr double kSpared = 0.001;
+/// The texels by which the outline of a triangle's mask may be off; of one that shows a line of the
+/// picture, or a place, none.
+double CutPlan::tolerance_of(const Material& material, uint32_t triangle) const {
     if (!options_.outline)
         return 0;  // by texels
+    double times = 1;
+    if (options_.bands) {
+        Box3 box;
+        for (int corner = 0; corner < 3; ++corner)
+            box.add(glm::dvec3(mesh_.positions[mesh_.triangles[triangle][corner]]));
+        times = std::exp2(options_.bands->octaves(box));
+    }
     const Texture& texture = material.alpha_texture;
     const std::array<double, 6>& m = texture.to_picture;
-    const double uv =
-        times * outline_error(*options_.outline) / metres_of_uv(mesh_, triangles, kSpared);
+    const double uv = times * outline_error(*options_.outline) / metres_of_uv(mesh_, triangle);
     return uv * std::min(std::hypot(m[0], m[1]) * texture.picture->width,
                          std::hypot(m[3], m[4]) * texture.picture->height);
 }
@@ -284,6 +285,8 @@ void CutPlan::find_outline(const CutSlot& slot, bool mask, CutBand& band) const 
     band.opaque = slot.full || band.outline;
     if (!band.opaque)
         band.outline = outlines_.hull(texture, band.hull_corners, job_);
+    if (slot.crowd && band.opaque && kOfCrowd * band.tolerance > 1)
+        band.joined = kJoined * kOfCrowd * band.tolerance;
     band.expected = band.triangles.size();
     if (band.outline)
         band.expected = static_cast<size_t>(std::min(

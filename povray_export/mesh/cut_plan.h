@@ -19,6 +19,7 @@ struct CutBand {
     size_t hull_corners = 0;  // corners of what it may be trimmed by
     MaskOutlinePtr outline;
     bool opaque = false;  // what is left has no alpha
+    double joined = 0;    // texels: of a triangle that is no wider one piece is left
 };
 
 /// How a slot's mask is cut.
@@ -66,8 +67,7 @@ private:
     const Material* material_of(uint16_t slot) const;
     void collect_slots();
     std::vector<CutBand> bands_of(const CutSlot& slot) const;
-    double tolerance_of(const Material& material, std::span<const uint32_t> triangles,
-                        double times) const;
+    double tolerance_of(const Material& material, uint32_t triangle) const;
     bool painted_clear(const CutSlot& slot) const;
     bool may_be_crowd(const CutSlot& slot) const;
     MaskOutlinePtr outline_that_fits(const ShownMask& mask, bool crowd) const;

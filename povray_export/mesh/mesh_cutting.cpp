@@ -13,6 +13,10 @@
 namespace lodestone::povray {
 namespace {
 
+/// The most pieces of a triangle that become one.
+/// Law: so many corners has no outline.
+constexpr size_t kMostPieces = 4 * MaskOutlines::kMostCorners;
+
 class MeshCutter {
 public:
     MeshCutter(const Model& model, const Representation& representation,
@@ -113,7 +117,7 @@ private:
     bool cut_all(const CutSlot& slot, const CutBand& band, size_t before) {
         TriangleCutter cutter(*band.outline, slot.material->alpha_texture, job_);
         return std::all_of(band.triangles.begin(), band.triangles.end(), [&](uint32_t triangle) {
-            return cut_one(cutter, triangle, slot, before + band.most);
+            return cut_one(cutter, triangle, slot, band.joined, before + band.most);
         });
     }
 
@@ -145,13 +149,25 @@ private:
         keep_all(band.triangles);
     }
 
-    /// False: there are more triangles than `most`.
-    bool cut_one(TriangleCutter& cutter, uint32_t triangle, const CutSlot& slot, size_t most) {
+    /// The longest side of a triangle in texels.
+    static double longest(const Texture& texture, const glm::dvec2 (&at)[3]) {
+        const glm::dvec2 size(texture.picture->width, texture.picture->height);
+        return std::max({glm::length((at[1] - at[0]) * size), glm::length((at[2] - at[1]) * size),
+                         glm::length((at[0] - at[2]) * size)});
+    }
+
+    /// `joined`: the longest side, in texels, of a triangle of which one piece is left. False: there
+    /// are more triangles than `most`.
+    bool cut_one(TriangleCutter& cutter, uint32_t triangle, const CutSlot& slot, double joined,
+                 size_t most) {
         glm::dvec2 at[3];
         plan_.place(slot.material->alpha_texture, triangle, at);
         if (out_.mesh.triangles.size() >= most)
             return false;
-        const CutTriangle& pieces = cutter.cut(at, most - out_.mesh.triangles.size());
+        const bool join = longest(slot.material->alpha_texture, at) <= joined;
+        const CutTriangle& cut =
+            cutter.cut(at, join ? kMostPieces : most - out_.mesh.triangles.size());
+        const CutTriangle& pieces = join ? cutter.join_pieces() : cut;
         switch (pieces.outcome) {
             case CutOutcome::TooMany:
                 return false;

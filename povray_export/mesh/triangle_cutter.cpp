@@ -170,6 +170,36 @@ const CutTriangle& TriangleCutter::cut(const glm::dvec2 (&at)[3], size_t most) {
     return out_;
 }
 
+const CutTriangle& TriangleCutter::join_pieces() {
+    if (out_.outcome != CutOutcome::Pieces || out_.triangles.size() < 2)
+        return out_;
+    double area = 0;  // as a share
+    glm::dvec3 center(0.0);
+    for (const glm::uvec3& piece : out_.triangles) {
+        const glm::dvec3& a = out_.corners[piece.x];
+        const glm::dvec3& b = out_.corners[piece.y];
+        const glm::dvec3& c = out_.corners[piece.z];
+        const double own = std::abs(glm::determinant(glm::dmat3(a, b, c)));
+        area += own;
+        center += own / 3 * (a + b + c);
+    }
+    if (!(area > 0))
+        return out_;
+    // The one is as the triangle, but smaller: each of its corners has its own weight and a third of
+    // what is left to go around.
+    const double size = std::min(1.0, std::sqrt(area));
+    glm::dvec3 rest = glm::max(center / area - size / 3, 0.0);
+    const double sum = rest.x + rest.y + rest.z;
+    rest = sum > 0 ? rest * ((1 - size) / sum) : glm::dvec3((1 - size) / 3);
+    out_.corners.clear();
+    for (int k = 0; k < 3; ++k) {
+        out_.corners.push_back(rest);
+        out_.corners.back()[k] += size;
+    }
+    out_.triangles = {{0, 1, 2}};
+    return out_;
+}
+
 TriangleCutter::PictureTile TriangleCutter::tile_of(int64_t column, int64_t row) const {
     PictureTile tile{glm::dvec2(column, row), glm::dvec2(1.0)};
     if (mirrored(texture_, column)) {

@@ -39,6 +39,9 @@ public:
     /// is valid until the next call. cost: O(most + triangles of the outline), for what takes
     /// longer is TooMany. Throws Error(Cancelled).
     const CutTriangle& cut(const glm::dvec2 (&at)[3], size_t most);
+    /// Makes the pieces of the last cut one triangle of their area, around their center as far as
+    /// it stays inside of the triangle that was cut.
+    const CutTriangle& join_pieces();
 
 private:
     /// One repetition of the picture: a point p of it lies at origin + sign * p.

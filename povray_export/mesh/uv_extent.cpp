@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/mesh/uv_extent.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
-#include <vector>
 
 namespace lodestone::povray {
 
@@ -23,22 +20,6 @@ double metres_of_uv(const Mesh& mesh, size_t triangle) {
     const double most = (uu + vv) / 2 + std::hypot((uu - vv) / 2, glm::dot(along_u, along_v));
     return most > 0 && std::isfinite(most) ? std::sqrt(most)
                                            : std::numeric_limits<double>::infinity();
-}
-
-double metres_of_uv(const Mesh& mesh, std::span<const uint32_t> triangles, double spared) {
-    std::vector<std::pair<double, double>> areas;
-    double left = 0;
-    for (const uint32_t triangle : triangles) {
-        const double area = glm::length(area_vector(mesh, triangle));
-        if (!(area > 0))
-            continue;
-        areas.emplace_back(metres_of_uv(mesh, triangle), area);
-        left += spared * area;
-    }
-    std::sort(areas.begin(), areas.end());
-    while (areas.size() > 1 && (left -= areas.back().second) >= 0)
-        areas.pop_back();
-    return areas.empty() ? 0 : areas.back().first;
 }
 
 }  // namespace lodestone::povray

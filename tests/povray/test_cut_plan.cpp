@@ -32,3 +32,51 @@ TEST(CutPlan, ACrowdIsCutHalfAsFinely) {
     EXPECT_EQ(each(32, {}), each(31, {}));
     EXPECT_EQ(each(32, outline_step(0.4 / 256)), each(31, {}));
 }
+
+// Trees with a trunk on the picture of their leaves had all leaves cut by single texels.
+TEST(CutPlan, AStretchedTriangleMadeAllOthersFine) {
+    const Texture flower = alpha_of(256, [](double u, double v) {
+        const double x = u - 0.5;
+        const double y = v - 0.5;
+        const double edge = 0.35 + 0.06 * std::sin(9 * std::atan2(y, x));
+        return std::hypot(x, y) < edge ? 1 : 0;
+    });
+    Mesh cards;
+    for (int i = 0; i < 40; ++i)
+        append(cards, card(), {glm::dmat3(1.0), {0, 0, 0.1 * i}});
+    Mesh trunk = card();
+    for (glm::vec2& uv : trunk.uvs)
+        uv = {0.5, 0.5 + 0.01 * uv.y};
+    Mesh tree = cards;
+    append(tree, trunk, {glm::dmat3(1.0), {5, 0, 0}});
+    const int outline = outline_step(6.0 / 256);
+    const size_t alone = cut(cards, leaf(flower), outline).mesh.triangles.size();
+    const size_t with_trunk = cut(tree, leaf(flower), outline).mesh.triangles.size();
+    EXPECT_LE(with_trunk, alone + 2);
+    EXPECT_GT(with_trunk, alone);
+    EXPECT_GT(cut(tree, leaf(flower)).mesh.triangles.size(), 2 * with_trunk);
+}
+
+// A meadow of flowers less than a pixel large each became seven triangles a flower.
+TEST(CutPlan, WhatIsSmallerThanTheToleranceBecomesOneTriangleOfItsArea) {
+    const Texture ring = alpha_of(64, [](double u, double v) {
+        const double out = std::hypot(u - 0.5, v - 0.5);
+        return out < 0.45 && out > 0.2 ? 1 : 0;
+    });
+    Mesh meadow;
+    for (int i = 0; i < 40; ++i)
+        append(meadow, card(), {glm::dmat3(1.0), {0, 0, 0.1 * i}});
+    const CutMesh found = cut(meadow, leaf(ring), outline_step(0.5));
+    EXPECT_EQ(found.mesh.triangles.size(), meadow.triangles.size());
+    EXPECT_NEAR(surface_area(found.mesh) / 40, ring.picture->mean.w, 0.05 * ring.picture->mean.w);
+    for (size_t i = 0; i < found.mesh.triangles.size(); ++i) {
+        for (int k = 0; k < 3; ++k) {
+            const glm::vec3& at = found.mesh.positions[found.mesh.triangles[i][k]];
+            EXPECT_GE(std::min(at.x, at.y), -1e-6f);
+            EXPECT_LE(std::max(at.x, at.y), 1 + 1e-6f);
+        }
+        EXPECT_GT(area_vector(found.mesh, i).z, 0);
+    }
+    EXPECT_GT(cut(meadow, leaf(ring), outline_step(0.02)).mesh.triangles.size(),
+              4 * meadow.triangles.size());
+}
