@@ -19,7 +19,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 10;
+constexpr uint32_t kBakeVersion = 11;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;

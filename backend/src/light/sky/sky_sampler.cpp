@@ -38,6 +38,19 @@ constexpr double kInward = 0.01;
 // Taste: more find what lies behind more sheets.
 constexpr int kMostCovers = 4;
 
+/// The factor on the mean of two sides' shares that makes it the share of the side that is seen:
+/// whoever looks at a leaf looks from where it is open, on each side as often as it sees the sky.
+/// Of so many rays each side's `front` and `back` see the sky; what differs by chance does not count.
+double of_side_that_is_seen(double front, double back, int rays) {
+    if (!(front + back > 0) || rays < 2)
+        return 1;
+    const double f = front / rays;
+    const double b = back / rays;
+    const double by_chance = (f * (1 - f) + b * (1 - b)) / (rays - 1);
+    const double apart = std::max(0.0, (f - b) * (f - b) - by_chance);
+    return 1 + apart / ((f + b) * (f + b));
+}
+
 /// The map of normals: the transposed inverse, but for its length, where there is one. Under a
 /// placement that flattens all it is that of the flat side.
 glm::dmat3 normal_map_of(const glm::dmat3& linear) {
@@ -125,6 +138,8 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
     const uint32_t first = static_cast<uint32_t>(triangle % kParts) * static_cast<uint32_t>(rays);
     uint32_t blocker = ray::PlacedScenes::kNothing;
     uint32_t near = ray::kNoTriangle;
+    double front = 0;  // rays of the first kind that see the sky
+    double back = 0;
     // Rays are cast in pairs: from one point to both sides of the normal, or from both sides of
     // the triangle. Where one of the first kind begins inside of something, so does the other.
     for (int i = 0; i < rays; i += 2) {
@@ -138,6 +153,7 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
         for (const SkyRay& one : pair) {
             const bool free = one.open && !hidden(one, blocker);
             seen += free ? 1 : 0;
+            (&one == pair ? front : back) += free ? 1 : 0;
             inside = inside || (one.open && !free && !both && meets_near_back(one, reach));
         }
         for (size_t corner = 0; corner < 3; ++corner) {
@@ -146,6 +162,11 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
             if (!inside)
                 out.seen[corner] += seen * weight;
         }
+    }
+    if (both) {
+        const double factor = of_side_that_is_seen(front, back, (rays + 1) / 2);
+        for (double& seen : out.seen)
+            seen *= factor;
     }
     const bool dark = !both && out.share() < kDark;
     out.inside = dark && lies_inside(mesh, triangle, placed);

@@ -11,10 +11,10 @@ namespace lodestone::light {
 /// corners as far as these are near, so that the mean of the surface is kept, and corners at one
 /// place that face the same way share one number. An opaque triangle's share is that of its front,
 /// with half of its back's where that is dark and the mesh is open; one with masks or clear
-/// materials (leaves) has the mean of both sides. Triangles that lie inside
-/// of something opaque tell nothing to corners that others share. A level has the light of its
-/// original: rays begin at the places of that which it shows, facing alike. The result does not depend on the
-/// number of threads. cost: `rays` rays a vertex, and a quarter more for splits
+/// materials (leaves) has that of the side that is seen: each as often as it is open. Triangles that
+/// lie inside of something opaque tell nothing to corners that others share. A level has the light
+/// of its original: rays begin at the places of that which it shows, facing alike. The result does
+/// not depend on the number of threads. cost: `rays` rays a vertex, and a quarter more for splits
 SkyShares sky_shares(const SkyRequest& request, const Job& job);
 
 /// The means, over the surface, of the shares of the whole request and of the surface alone, by so
