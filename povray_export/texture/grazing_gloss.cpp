@@ -30,6 +30,10 @@ constexpr double kSaturation = 0.75;
 /// makes it better, and the surface below needs a stronger finish.
 constexpr double kLeastCover = 0.25;
 
+/// The angle at which highlights grow as much as they should.
+/// Taste: seen flatter little is left of a surface.
+constexpr size_t kSame = kAngleCount - 2;
+
 /// The reflection of surfaces of one roughness.
 struct GrazingRow {
     double roughness;
@@ -212,16 +216,17 @@ std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look) {
     out.matte = row.matte;
     out.highlight = weight * row.highlight;
     out.roughness = std::exp(-row.log_exponent);
-    out.lamp_growth = row.lamp_growth;
+    // What reflects weakly grows the more in a sky, of which some is met at no angle. Most lamps are
+    // met at half angles where it reflects as little as it does when facing.
+    const double usual = row.sky[kSame] / row.sky[0] - 1;
+    out.lamp_growth = row.lamp_growth * usual / std::max(out.grow[kSame] - 1, 1e-3);
     return out;
 }
 
 GlossText gloss_alone(const GrazingGloss& gloss, double sky, double times) {
     const CoveredGloss plain{gloss.grow, {}};
     const CoveredGloss layer = covered_gloss(gloss);
-    // The highlight of the layer follows another pigment: it is to grow as much at this angle.
-    // Taste: seen flatter little is left of a surface.
-    constexpr size_t kSame = kAngleCount - 2;
+    // The highlight of the layer follows another pigment: it is to grow as much at kSame.
     const double growth =
         gloss.lamp_growth * (layer.white[kSame] - 1) / std::max(gloss.grow[kSame] - 1, 1e-3);
     GlossText out;

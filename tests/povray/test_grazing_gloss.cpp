@@ -77,6 +77,20 @@ TEST(GrazingGloss, ItGrowsWithTheAngleAndLessWhereTheSurfaceIsRougher) {
     }
 }
 
+// Dark turf of specular 0.1 had four times the highlight of a high sun that Cycles has.
+TEST(GrazingGloss, WeakHighlightsGrewAsTheSkysReflectionDoes) {
+    const auto highlight = [](double specular, double roughness) {
+        Material material = black(roughness);
+        material.specular = specular;
+        const auto gloss = grazing_gloss(look_of(material));
+        return gloss->highlight * (1 + gloss->lamp_growth * (gloss->grow[5] - 1));
+    };
+    for (const double roughness : {0.3, 0.6, 0.9}) {
+        EXPECT_NEAR(highlight(0.1, roughness) / highlight(0.5, roughness), 0.2, 1e-9);
+        EXPECT_NEAR(highlight(1, roughness) / highlight(0.5, roughness), 2, 1e-9);
+    }
+}
+
 TEST(GrazingGloss, StrongAndWeakGlossComeTogetherWhereNothingIsSeenOfTheSurface) {
     // Measured in Cycles at roughness 0.5: specular 0.2 and 1 over 0.5, facing and at 80 degrees.
     const auto at = [](double specular, size_t angle) {
