@@ -216,7 +216,7 @@ std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look) {
     out.matte = row.matte;
     out.highlight = weight * row.highlight;
     out.roughness = std::exp(-row.log_exponent);
-    // What reflects weakly grows the more in a sky, of which some is met at no angle. Most lamps are
+    // Weak gloss of a sky grows the more, of which some is met at no angle. Most lamps are
     // met at half angles where it reflects as little as it does when facing.
     const double usual = row.sky[kSame] / row.sky[0] - 1;
     out.lamp_growth = row.lamp_growth * usual / std::max(out.grow[kSame] - 1, 1e-3);

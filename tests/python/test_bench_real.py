@@ -60,6 +60,11 @@ class Real(unittest.TestCase):
         self.assertIn("at most 2.00", lines[-1])
         self.assertIn("own 1.50", lines[-1])
 
+    def test_a_view_without_full_detail_has_no_ssim(self):
+        found = {"x/near": view(4.0, 2.0, 0.03)}
+        found["x/near"]["ours"]["1"]["ssim"] = None
+        self.assertIn("| - |", bench.table(found)[2])
+
     def test_nothing_has_no_mean(self):
         self.assertEqual(bench.mean_ratio([]), 0.0)
         self.assertEqual(len(bench.table({})), 2)

@@ -16,8 +16,7 @@ struct ShadowLight {
     const Light* light = nullptr;
     bool sun = true;
     glm::dvec3 way{0, 0, 1};  // of a sun: to it; has length 1
-    /// Of a sun: of its disk at distance 1. Of a lamp: how far it reaches from its middle, metres.
-    double radius = 0;
+    double radius = 0;        // of a sun's disk at distance 1; of a lamp: from its middle, metres
     double strength = 0;  // of a sun: W/m^2; of a lamp: that at 1 m from it; however it is colored
 };
 
