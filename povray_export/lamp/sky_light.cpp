@@ -7,6 +7,20 @@
 
 namespace lodestone::povray {
 
+double stepped_factor(double factor) {
+    // The steps of a factor.
+    // Taste: fine enough to keep means, coarse enough that rounding does not make other files.
+    constexpr double kFactorSteps = 256;
+    return std::round(limited(factor, 0, 1) * kFactorSteps) / kFactorSteps;
+}
+
+SkyLightPtr even_sky_light(double factor) {
+    auto light = std::make_shared<SkyLight>();
+    light->factor = stepped_factor(factor);
+    light->hash = Hasher().value(light->factor).result();
+    return light;
+}
+
 double share_of_grade(uint8_t grade) {
     const double root = static_cast<double>(grade) / (kSkyGrades - 1);
     return root * root;

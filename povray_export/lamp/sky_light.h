@@ -28,4 +28,9 @@ struct SkyLight {
 };
 using SkyLightPtr = std::shared_ptr<const SkyLight>;
 
+/// A factor without digits that would only make other files.
+double stepped_factor(double factor);
+/// The same light on all of a thing.
+SkyLightPtr even_sky_light(double factor);
+
 }  // namespace lodestone::povray

@@ -4,6 +4,7 @@
 #include "base/findings_file.h"
 #include "base/parallel.h"
 #include "light/sky/joined_surface.h"
+#include "light/sky/sky_means.h"
 #include "povray_export/lamp/corner_rays.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_things.h"
@@ -19,7 +20,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 11;
+constexpr uint32_t kBakeVersion = 12;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -28,14 +29,6 @@ constexpr double kMostMeanRays = 300'000;  // Taste: rays of all placements toge
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
-// The steps of a factor.
-// Taste: fine enough to keep means, coarse enough that rounding does not make other files.
-constexpr double kFactorSteps = 256;
-
-double stepped(double factor) {
-    return std::round(limited(factor, 0, 1) * kFactorSteps) / kFactorSteps;
-}
-
 class SkyPlanner {
 public:
     SkyPlanner(const Model& model, const choose::Cut& cut, const SkyOcclusionOptions& options,
@@ -65,7 +58,7 @@ public:
     bool baked() const { return !missing_.empty() || !missing_means_.empty(); }
     std::vector<SkyLightPtr> lights() { return std::move(lights_); }
     SkyLightPtr mean_of(size_t position) const {
-        return position < means_.size() ? factor_light(means_[position]) : nullptr;
+        return position < means_.size() ? even_sky_light(means_[position]) : nullptr;
     }
 
 private:
@@ -77,6 +70,7 @@ private:
         /// By triangle, 1: any of the things shows it. Empty: all count as shown.
         std::vector<uint8_t> seen;
         int rays = 0;                                   // of a corner
+        int whole_rays = 0;                             // the same where all of it is seen
         std::shared_ptr<const light::SkyShares> found;  // of as many or fewer until it is baked
     };
     /// A request for the means of all placements of one finest level, or of one stand-in.
@@ -175,16 +169,20 @@ private:
     /// Chooses the rays of all surfaces by what is seen of them.
     void choose_rays() {
         std::vector<uint64_t> counts;
-        counts.reserve(wanted_shares_.size());
+        std::vector<uint64_t> all;
         for (auto& [key, wanted] : wanted_shares_) {
+            all.push_back(wanted.representation->summary.cost.triangles);
             if (static_cast<double>(seen_of(wanted)) >
                 kMostSeen * static_cast<double>(wanted.seen.size()))
                 wanted.seen.clear();
             counts.push_back(seen_of(wanted));
         }
         const CornerRays rays(options_.rays, counts, options_.pixels);
-        for (auto& [key, wanted] : wanted_shares_)
+        const CornerRays whole_rays(options_.rays, all, options_.pixels);
+        for (auto& [key, wanted] : wanted_shares_) {
             wanted.rays = rays.of(seen_of(wanted));
+            wanted.whole_rays = whole_rays.of(wanted.representation->summary.cost.triangles);
+        }
     }
 
     /// Finds what was kept, or lists what is to be found: the shares of what the picture shows, and
@@ -196,12 +194,15 @@ private:
             if (found && fits(*wanted.representation, *found))
                 wanted.found = std::make_shared<const light::SkyShares>(std::move(*found));
         }
-        const int found_rays = wanted.found ? static_cast<int>(wanted.found->rays) : 0;
-        if (wanted.found && found_rays >= wanted.rays && light::covers(*wanted.found, wanted.seen))
-            return;
-        if (wanted.found)
+        if (wanted.found) {
+            const int rays =
+                wanted.found->seen.empty() ? std::min(wanted.rays, wanted.whole_rays) : wanted.rays;
+            if (wanted.found->rays >= static_cast<uint32_t>(rays) &&
+                light::covers(*wanted.found, wanted.seen))
+                return;
             wanted.seen.clear();
-        wanted.rays = std::clamp(found_rays, wanted.rays, std::max(options_.rays, wanted.rays));
+            wanted.rays = wanted.whole_rays;
+        }
         missing_.emplace_back(key, &wanted);
     }
 
@@ -385,13 +386,6 @@ private:
         bakes_.save();
     }
 
-    static SkyLightPtr factor_light(double factor) {
-        auto light = std::make_shared<SkyLight>();
-        light->factor = stepped(factor);
-        light->hash = Hasher().value(light->factor).result();
-        return light;
-    }
-
     void light_all() {
         for (auto& [hash, wanted] : wanted_means_) {
             for (const light::SkyMeans& mean : wanted.found)
@@ -407,16 +401,17 @@ private:
                 means_[i] = means->found[number].placed;
             if (shares_of_[i] == nullptr) {
                 if (means != nullptr)
-                    lights_[i] = factor_light(share_of_grade(grade_of_share(means_[i])));
+                    lights_[i] = even_sky_light(share_of_grade(grade_of_share(means_[i])));
                 continue;
             }
             auto light = std::make_shared<SkyLight>();
             light->shares = shares_of_[i]->found;
-            light->factor = means != nullptr ? stepped(means->ratios[number]) : 1;
+            light->factor = means != nullptr ? stepped_factor(means->ratios[number]) : 1;
             const Hash key = key_of(all_.things()[i], shares_of_[i]->placed != nullptr);
             light->hash = Hasher()
                               .value(key)
                               .value(light->factor)
+                              .value(light->shares->rays)
                               .array(std::span<const uint8_t>(light->shares->seen))
                               .result();
             if (means == nullptr)

@@ -2,11 +2,14 @@
 #include "povray_export/mesh/cut_plan.h"
 
 #include "base/error.h"
+#include "base/maths.h"
 #include "light/clear_materials.h"
 #include "povray_export/mesh/clear_layers.h"
 #include "povray_export/mesh/doubled_triangles.h"
 #include "povray_export/mesh/triangle_cutter.h"
 #include "povray_export/mesh/uv_extent.h"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
@@ -85,11 +88,14 @@ void CutPlan::collect_slots() {
 
 /// The triangles of a slot by how finely they are seen, and how stretched the picture lies on them.
 std::vector<CutBand> CutPlan::bands_of(const CutSlot& slot) const {
-    std::vector<CutBand> all(kMostOctaves + 1);
+    // The first band is of those that are cut by texels.
+    std::vector<CutBand> all(kMostOctaves + 2);
     for (const uint32_t triangle : slot.triangles) {
+        if (!(glm::length(area_vector(mesh_, triangle)) > 0))
+            continue;  // it shows nothing
         const double tolerance = tolerance_of(*slot.material, triangle);
-        const int octave = std::ilogb(std::clamp(tolerance, 1.0, std::exp2(kMostOctaves)));
-        CutBand& band = all[static_cast<size_t>(octave)];
+        const int octave = std::ilogb(limited(tolerance, 1, std::exp2(kMostOctaves)));
+        CutBand& band = all[tolerance >= 1 ? static_cast<size_t>(octave) + 1 : 0];
         band.tolerance = band.triangles.empty() ? tolerance : std::min(band.tolerance, tolerance);
         band.triangles.push_back(triangle);
     }
@@ -229,7 +235,6 @@ bool CutPlan::find_outlines_of(CutSlot& slot) const {
     const Material& material = *slot.material;
     const Texture& texture = material.alpha_texture;
     slot.seen = image::unseen_texels(texture.picture->width, texture.picture->height);
-    double pictures = 0;  // that all triangles together show
     for (CutBand& band : slot.bands) {
         for (const uint32_t triangle : band.triangles) {
             glm::dvec2 at[3];
@@ -239,14 +244,14 @@ bool CutPlan::find_outlines_of(CutSlot& slot) const {
             const glm::dvec2 b = at[2] - at[0];
             band.pictures += std::abs(a.x * b.y - a.y * b.x) / 2;
         }
-        pictures += band.pictures;
+        slot.pictures += band.pictures;
     }
     const image::MaskCount count = outlines_.count(texture, slot.seen);
     const bool clip = material.alpha_mode == AlphaMode::Clip;
     if (count.seen == 0)
         return false;
     // Each triangle of a crowd shows one picture at most: fences repeat theirs.
-    slot.crowd = may_be_crowd(slot) && pictures <= static_cast<double>(slot.triangles.size());
+    slot.crowd = may_be_crowd(slot) && slot.pictures <= static_cast<double>(slot.triangles.size());
     // So many blends behind each other look as a mask of them does, and POV-Ray bears no more.
     const bool deep = layers_ > kMostLayers;
     const bool mask = !slot.painted && (clip || deep || count.is_mask());
@@ -268,8 +273,10 @@ bool CutPlan::find_outlines_of(CutSlot& slot) const {
 void CutPlan::find_outline(const CutSlot& slot, bool mask, CutBand& band) const {
     const Texture& texture = slot.material->alpha_texture;
     const size_t bands = slot.bands.size();
+    const double own = slot.pictures > 0 ? band.pictures / slot.pictures : 1;
+    const auto few = static_cast<size_t>(kMostOfFew * (own + 1.0 / static_cast<double>(bands)) / 2);
     band.most = std::clamp((slot.crowd ? kMostInCrowd : kMostEach) * band.triangles.size(),
-                           kMostOfFew / bands, kMostOfMany);
+                           std::min(few, kMostOfFew), kMostOfMany);
     if (options_.most_cut)
         band.most = std::min(band.most, (size_t{1} << *options_.most_cut) / slots_.size() / bands);
     // An outline is about as many triangles as corners, once for each picture, and the sides of

@@ -33,6 +33,7 @@ struct CutSlot {
     bool crowd = false;    // of leaves, none of which matters
     bool full = false;     // nothing of it is clear: it is opaque without any cut
     bool painted = false;  // colors of vertices make some of it clear
+    double pictures = 0;   // that all triangles together show
     std::vector<CutBand> bands;
 };
 

@@ -81,15 +81,38 @@ private:
             keep_all(slot.doubles);
             out_.any = true;
         }
-        bool opaque = true;
-        for (CutBand& band : slot.bands)
-            opaque = (slot.full || cut_band(slot, band)) && opaque;
+        const size_t before = out_.mesh.triangles.size();
+        const size_t vertices = out_.mesh.positions.size();
+        bool opaque = slot.full || cut_bands(slot);
+        if (!opaque && join_nothing(slot)) {
+            shrink(before, vertices);
+            opaque = cut_bands(slot);
+        }
         if (out_.opaque.size() <= number)
             out_.opaque.resize(size_t{number} + 1, 0);
         out_.opaque[number] = opaque ? 1 : 0;
     }
 
     /// Whether what is left has no alpha.
+    bool cut_bands(CutSlot& slot) {
+        bool opaque = true;
+        for (CutBand& band : slot.bands)
+            opaque = cut_band(slot, band) && opaque;
+        return opaque;
+    }
+
+    /// Forbids pieces to be joined: they would lie where the alpha that the slot keeps is clear.
+    /// False: none were.
+    static bool join_nothing(CutSlot& slot) {
+        bool any = false;
+        for (CutBand& band : slot.bands) {
+            any = any || band.joined > 0;
+            band.joined = 0;
+        }
+        return any;
+    }
+
+    /// The same of one band.
     bool cut_band(const CutSlot& slot, CutBand& band) {
         const size_t before = out_.mesh.triangles.size();
         const size_t vertices = out_.mesh.positions.size();
@@ -138,6 +161,7 @@ private:
     /// Cuts off what is clear of a band that became too many triangles, or keeps it. It has alpha.
     void trim(const CutSlot& slot, const CutBand& band, size_t before, size_t vertices) {
         CutBand hull = band;
+        hull.joined = 0;
         hull.outline = band.opaque
                            ? outlines_.hull(slot.material->alpha_texture, band.hull_corners, job_)
                            : nullptr;

@@ -219,7 +219,10 @@ std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look) {
     // Weak gloss of a sky grows the more, of which some is met at no angle. Most lamps are
     // met at half angles where it reflects as little as it does when facing.
     const double usual = row.sky[kSame] / row.sky[0] - 1;
-    out.lamp_growth = row.lamp_growth * usual / std::max(out.grow[kSame] - 1, 1e-3);
+    // Law: gloss that is stronger than any grows less; its highlight need not make up for all of it.
+    constexpr double kMostTimes = 4;
+    out.lamp_growth =
+        row.lamp_growth * std::min(kMostTimes, usual / std::max(out.grow[kSame] - 1, 1e-3));
     return out;
 }
 

@@ -57,6 +57,50 @@ TEST(CutPlan, AStretchedTriangleMadeAllOthersFine) {
     EXPECT_GT(cut(tree, leaf(flower)).mesh.triangles.size(), 2 * with_trunk);
 }
 
+// A triangle without area, which shows nothing, had all leaves cut by single texels.
+TEST(CutPlan, ATriangleWithoutAreaMadeAllOthersFine) {
+    Mesh cards;
+    for (int i = 0; i < 40; ++i)
+        append(cards, card(), {glm::dmat3(1.0), {0, 0, 0.1 * i}});
+    const int outline = outline_step(1.5 / 256);
+    const size_t alone = cut(cards, leaf(disk(256)), outline).mesh.triangles.size();
+    cards.triangles.push_back({0, 0, 1});
+    EXPECT_EQ(cut(cards, leaf(disk(256)), outline).mesh.triangles.size(), alone);
+}
+
+// Joined leaves had their alpha once more, where it was clear.
+TEST(CutPlan, WhereSomeOfASlotKeepsItsAlphaNothingIsJoined) {
+    const Texture ring = alpha_of(64, [](double u, double v) {
+        const double out = std::hypot(u - 0.5, v - 0.5);
+        return out < 0.45 && out > 0.2 ? 1 : 0;
+    });
+    scenes::Builder builder;
+    Mesh mesh;
+    for (int i = 0; i < 80; ++i)  // small ones and large ones
+        append(mesh, card(), {(i % 2 == 0 ? 1.0 : 100.0) * glm::dmat3(1.0), {0, 0, 10.0 * i}});
+    const ObjectIndex object = builder.mesh(mesh, {builder.material(leaf(ring))});
+    MaskOutlines outlines;
+    RepresentationOptions options;
+    options.outline = outline_step(0.5);
+    const auto area_of_small = [&] {
+        const CutMesh found = cut_masks(
+            builder.model, builder.model.objects[object].representations[0], options, outlines, {});
+        if (!found.any)
+            return std::pair(1.0, false);
+        double area = 0;
+        for (size_t i = 0; i < found.mesh.triangles.size(); ++i)
+            area += found.sources[i] / 2 % 2 == 0 ? glm::length(area_vector(found.mesh, i)) / 2 : 0;
+        return std::pair(area / 40, found.opaque[0] != 0);
+    };
+    const auto [joined, opaque] = area_of_small();
+    EXPECT_TRUE(opaque);
+    EXPECT_NEAR(joined, ring.picture->mean.w, 0.03);
+    options.most_cut = 8;  // too few for the large ones
+    const auto [whole, cut_out] = area_of_small();
+    EXPECT_FALSE(cut_out);
+    EXPECT_GT(whole, joined + 0.1);
+}
+
 // A meadow of flowers less than a pixel large each became seven triangles a flower.
 TEST(CutPlan, WhatIsSmallerThanTheToleranceBecomesOneTriangleOfItsArea) {
     const Texture ring = alpha_of(64, [](double u, double v) {

@@ -423,19 +423,6 @@ TEST_F(SkyOcclusionScenes, TheLightOnCopiesDoesNotDependOnWhatIsKept) {
     EXPECT_EQ(includes("some"), includes("scene"));
 }
 
-TEST_F(SkyOcclusionScenes, ALargerPictureHasMoreRaysAndASmallerOneKeepsThem) {
-    builder.place(builder.mesh(shapes::sphere(1, 4)));
-    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
-    Problems problems;
-    SkyOcclusionOptions options;
-    options.file = own_scratch() / "sky_light.bin";
-    const auto rays = [&](double pixels) {
-        options.pixels = pixels;
-        return SkyOcclusion(builder.model, cut, options, problems, {}).of(0)->shares->rays;
-    };
-    EXPECT_EQ(std::vector({rays(100), rays(1e6), rays(100)}), (std::vector{16u, 128u, 128u}));
-}
-
 // Splits follow all that is there, and what was kept those of another scene.
 TEST_F(SkyOcclusionScenes, SharesOfOtherSplitsAreNotTaken) {
     builder.place(builder.mesh(shapes::quad(40, 40)), at(-20, -20, 0));

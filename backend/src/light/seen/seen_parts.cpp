@@ -41,9 +41,13 @@ constexpr size_t kMostAims = 1 << 21;  // Taste: some seconds
 // The mirrors in a row that a ray follows.
 // Taste: more find things deeper in mirrors.
 constexpr int kMostMirrors = 4;
-// The tests of places and things against lights, beyond which everything throws shadows.
+// The tests of places and of things against lights, beyond which everything throws shadows.
 // Taste: a second or so.
-constexpr double kMostLightTests = 1e8;
+constexpr double kMostPlaceTests = 1e8;
+constexpr double kMostThingTests = 1e7;  // Taste: as kMostPlaceTests
+// The least part of its shadow's size that a thing near a lamp counts as.
+// Taste: a smaller value takes meshes with a lamp in them apart further.
+constexpr double kNearLamp = 0.125;
 
 /// The least of some sizes, from any thread.
 class LeastSize {
@@ -65,8 +69,7 @@ public:
     SeenSearch(const Model& model, const RendererSurfaces& renderer,
                std::span<const DrawnThing> drawn, const View& view, std::span<const Light> lights,
                const Job& job)
-        : model_(model),
-          drawn_(drawn),
+        : drawn_(drawn),
           view_(view),
           job_(job),
           scene_(model, renderer, drawn, job),
@@ -80,8 +83,9 @@ public:
         needs_.resize(first_.back(), 0);
         spacing_ = std::sqrt(static_cast<double>(view.width) * view.height / SeenParts::rays(view));
         lights_ = shadow_lights(lights);
-        const double places = SeenParts::rays(view) + static_cast<double>(drawn.size());
-        all_shade_ = static_cast<double>(lights_.size()) * places > kMostLightTests;
+        const auto count = static_cast<double>(lights_.size());
+        all_shade_ = count * SeenParts::rays(view) > kMostPlaceTests ||
+                     count * static_cast<double>(drawn.size()) > kMostThingTests;
         if (all_shade_)
             lights_.clear();
         reaches_.emplace(model, drawn, view, lights_, job);
@@ -182,7 +186,8 @@ private:
             while (scene_.step(walk, at)) {
                 note(at.drawn, at.triangle, kShades);
                 // The shadow of a lamp is as much larger as it falls farther from the lamp.
-                const double left = (way.length - (at.way - place.way)) / way.length;
+                const double left =
+                    std::max(kNearLamp, (way.length - (at.way - place.way)) / way.length);
                 shadow_pixels_[at.drawn].note(lights_[number].sun ? pixel : left * pixel);
                 if (at.ends)
                     break;
@@ -310,11 +315,12 @@ private:
             const glm::dvec3 v = linear * (glm::dvec3(mesh.positions[t.z]) - a);
             area += glm::length(glm::cross(u, v)) / 2;
         }
+        if (pyramid_.outside(bound))
+            return most;  // no ray through the picture comes near
         const double cell =
             spacing_ * choose::pixel_size(view_, distance(bound, view_.camera.position));
         // Law: a surface that is turned anyhow shows half of itself.
-        const double cells = area / (2 * cell * cell);
-        const double missed = std::exp(-cells / kOftenMissed);
+        const double missed = std::exp(-area / (2 * cell * cell) / kOftenMissed);
         return missed >= 0 ? std::max(1, static_cast<int>(std::ceil(most * missed))) : most;
     }
 
@@ -396,7 +402,9 @@ private:
                         note_all(drawn, triangles, kShades);
                         return;
                     }
-                    const int tries = aims_at(drawn, triangles, bound, aims);
+                    // No ray through the picture came near what is outside of it.
+                    const int tries =
+                        pyramid_.outside(bound) ? aims : aims_at(drawn, triangles, bound, aims);
                     for (const uint32_t number :
                          picker.pick({bound.center}, reaches_->of(drawn), random)) {
                         const ShadowLight& light = lights_[number];
@@ -442,18 +450,14 @@ private:
 
     /// Where there are too many lights to look for, lets each thing be needed as a whole.
     void shade_all() {
-        if (!all_shade_)
-            return;
-        parallel_for(drawn_.size(), [&](size_t i) {
-            for (size_t k = first_[i]; (drawn_[i].hidden & kShadowRays) == 0 && k < first_[i + 1];
-                 ++k)
-                needs_[k] |= kShades;
-        });
+        for (uint32_t i = 0; all_shade_ && i < drawn_.size(); ++i) {
+            for (size_t k = first_[i]; (drawn_[i].hidden & kShadowRays) == 0 && k < first_[i + 1];)
+                needs_[k++] |= kShades;
+        }
     }
 
     static bool finite(const DrawnThing& thing) { return thing.world.finite(); }
 
-    const Model& model_;
     std::span<const DrawnThing> drawn_;
     const View& view_;
     const Job& job_;

@@ -74,8 +74,9 @@ std::vector<ShadowLight> shadow_lights(std::span<const Light> lights) {
 double arriving(const ShadowLight& light, const LitPlace& place) {
     const bool sided = place.normal != glm::dvec3(0.0);
     if (light.sun)
-        return light.strength *
-               (sided ? std::max(glm::dot(light.way, place.normal), light.radius) : 1);
+        return light.strength * (sided ? std::clamp(glm::dot(light.way, place.normal),
+                                                    std::min(light.radius, 1.0), 1.0)
+                                       : 1);
     const glm::dvec3 way = light.light->position - place.point;
     const double square = glm::dot(way, way) + light.radius * light.radius;
     double out = light.strength / std::max(square, 1e-9);
@@ -83,9 +84,14 @@ double arriving(const ShadowLight& light, const LitPlace& place) {
         const double facing = glm::dot(way, place.normal) + light.radius;
         out *= std::clamp(facing / std::sqrt(std::max(square, 1e-9)), 0.0, 1.0);
     }
-    const bool behind =
-        light.light->kind != LightKind::Point && glm::dot(way, light.light->direction) > 0;
-    return behind ? 0 : out;
+    if (light.light->kind == LightKind::Point)
+        return out;
+    // Law: an area shines to half of all sides.
+    const double cone = light.light->kind == LightKind::Spot ? light.light->spot_size : kPi;
+    const double along = -glm::dot(way, light.light->direction);
+    const double least = std::cos(std::clamp(cone / 2, 0.0, kPi / 2)) * glm::length(way) *
+                         glm::length(light.light->direction);
+    return along > least || !(glm::length(way) > 0) ? out : 0;
 }
 
 std::span<const uint32_t> LightPicker::pick(const LitPlace& place, std::span<const uint32_t> among,

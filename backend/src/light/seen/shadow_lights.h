@@ -29,8 +29,7 @@ struct LitPlace {
     glm::dvec3 normal{0.0};  // has length 1; 0: all sides
 };
 
-/// The light that a place gets where nothing hides it, W/m^2, about: cones and spread are not looked
-/// at.
+/// The light that a place gets where nothing hides it, W/m^2, about: a lamp counts as its middle.
 double arriving(const ShadowLight& light, const LitPlace& place);
 
 /// Picks lights for one place after the other: the one that lights the place most, and one of the

@@ -38,19 +38,6 @@ constexpr double kInward = 0.01;
 // Taste: more find what lies behind more sheets.
 constexpr int kMostCovers = 4;
 
-/// The factor on the mean of two sides' shares that makes it the share of the side that is seen:
-/// whoever looks at a leaf looks from where it is open, on each side as often as it sees the sky.
-/// Of so many rays each side's `front` and `back` see the sky; what differs by chance does not count.
-double of_side_that_is_seen(double front, double back, int rays) {
-    if (!(front + back > 0) || rays < 2)
-        return 1;
-    const double f = front / rays;
-    const double b = back / rays;
-    const double by_chance = (f * (1 - f) + b * (1 - b)) / (rays - 1);
-    const double apart = std::max(0.0, (f - b) * (f - b) - by_chance);
-    return 1 + apart / ((f + b) * (f + b));
-}
-
 /// The map of normals: the transposed inverse, but for its length, where there is one. Under a
 /// placement that flattens all it is that of the flat side.
 glm::dmat3 normal_map_of(const glm::dmat3& linear) {
@@ -60,6 +47,14 @@ glm::dmat3 normal_map_of(const glm::dmat3& linear) {
 }
 
 }  // namespace
+
+double of_side_that_is_seen(double front, double back, double rays) {
+    if (!(front + back > 0) || !(rays > 1))
+        return 1;
+    const double by_chance = (front * (1 - front) + back * (1 - back)) / (rays - 1);
+    const double apart = std::max(0.0, (front - back) * (front - back) - by_chance);
+    return 1 + apart / ((front + back) * (front + back));
+}
 
 SkySampler::SkySampler(const SkyRequest& request)
     : request_(request), normal_map_(normal_map_of(request.world.linear)) {
@@ -138,8 +133,6 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
     const uint32_t first = static_cast<uint32_t>(triangle % kParts) * static_cast<uint32_t>(rays);
     uint32_t blocker = ray::PlacedScenes::kNothing;
     uint32_t near = ray::kNoTriangle;
-    double front = 0;  // rays of the first kind that see the sky
-    double back = 0;
     // Rays are cast in pairs: from one point to both sides of the normal, or from both sides of
     // the triangle. Where one of the first kind begins inside of something, so does the other.
     for (int i = 0; i < rays; i += 2) {
@@ -149,24 +142,22 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
         const SkyRay pair[] = {ray(place, false),
                                both ? ray(place, true) : ray(place, false, true)};
         double seen = 0;
+        double back = 0;
         bool inside = false;
         for (const SkyRay& one : pair) {
             const bool free = one.open && !hidden(one, blocker);
             seen += free ? 1 : 0;
-            (&one == pair ? front : back) += free ? 1 : 0;
+            back = both && free ? 1 : 0;  // of the second one
             inside = inside || (one.open && !free && !both && meets_near_back(one, reach));
         }
         for (size_t corner = 0; corner < 3; ++corner) {
             const double weight = pair[0].weights[corner];
             (inside ? out.inside_rays : out.rays)[corner] += 2 * weight;
-            if (!inside)
+            if (!inside) {
                 out.seen[corner] += seen * weight;
+                out.back[corner] += back * weight;
+            }
         }
-    }
-    if (both) {
-        const double factor = of_side_that_is_seen(front, back, (rays + 1) / 2);
-        for (double& seen : out.seen)
-            seen *= factor;
     }
     const bool dark = !both && out.share() < kDark;
     out.inside = dark && lies_inside(mesh, triangle, placed);

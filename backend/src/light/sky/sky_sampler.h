@@ -38,6 +38,7 @@ struct SkyRequest {
 /// The answers of the rays of one triangle.
 struct TriangleShares {
     std::array<double, 3> seen{};  // by corner, weighted by how near each ray began
+    std::array<double, 3> back{};  // the part of it that rays to the back of a leaf saw
     std::array<double, 3> rays{};  // the sum of these weights
     /// The weights of rays that begin inside of something opaque, which are not in the others.
     std::array<double, 3> inside_rays{};
@@ -48,6 +49,11 @@ struct TriangleShares {
         return sum > 0 ? (seen[0] + seen[1] + seen[2]) / sum : 0;
     }
 };
+
+/// The factor on the mean of two sides' shares that makes it the share of the side that is seen:
+/// whoever looks at a leaf looks from where it is open, on each side as often as it sees the sky.
+/// `front`, `back`: the shares, by so many rays each; what differs by chance does not count.
+double of_side_that_is_seen(double front, double back, double rays);
 
 /// Casts the rays of one request from triangles of a mesh that lies on its surface.
 class SkySampler {

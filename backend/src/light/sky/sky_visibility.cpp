@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <numeric>
 #include <unordered_map>
@@ -320,8 +319,18 @@ private:
         struct GroupShares {
             double seen = 0;
             double rays = 0;
+            double back = 0;      // of what is seen: by the backs of leaves
+            double count = 0;     // of rays
             double all_seen = 0;  // those inside of something too
             double all_rays = 0;
+            /// See of_side_that_is_seen().
+            double factor() const {
+                const double side = rays / 2;
+                return back > 0 || !opaque
+                           ? of_side_that_is_seen((seen - back) / side, back / side, count / 2)
+                           : 1;
+            }
+            bool opaque = true;
         };
         std::vector<GroupShares> sums;
         double seen = 0;
@@ -353,20 +362,30 @@ private:
                 if (!(rays + inside_rays > 0))
                     continue;
                 GroupShares& group = sums[found->second];
+                group.opaque = opaque(i);
                 const double weight = own / (rays + inside_rays);
                 group.all_seen += weight * shares.seen[at];
                 group.all_rays += weight * (shares.rays[at] + shares.inside_rays[at]);
                 if (!shares.inside) {
                     group.seen += weight * shares.seen[at];
                     group.rays += weight * shares.rays[at];
+                    group.back += weight * shares.back[at];
+                    group.count += shares.rays[at];
                 }
             }
+        }
+        for (size_t i = 0; i < groups.size(); ++i) {
+            const GroupShares& group = sums[groups[i]];
+            const TriangleShares& shares = shares_[i / 3];
+            const auto placed = sampler_.placed(mesh, i / 3);
+            if (!group.opaque && placed && shares.rays[0] + shares.rays[1] + shares.rays[2] > 0)
+                seen += placed->area / 3 * shares.share() * (group.factor() - 1);
         }
         out.mean = area > 0 ? seen / area : (all_area > 0 ? all_seen / all_area : 1);
         out.corners.reserve(groups.size());
         for (const uint32_t index : groups) {
             const GroupShares& group = sums[index];
-            const double share = group.rays > 0       ? group.seen / group.rays
+            const double share = group.rays > 0       ? group.factor() * group.seen / group.rays
                                  : group.all_rays > 0 ? group.all_seen / group.all_rays
                                                       : out.mean;
             out.corners.push_back(share_byte(share));
@@ -391,89 +410,6 @@ private:
 
 SkyShares sky_shares(const SkyRequest& request, const Job& job) {
     return SkyBake(request, job).run();
-}
-
-SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
-    const SkySampler sampler(request);
-    const Mesh& mesh = *request.surface.mesh;
-    const std::vector<double>& areas = request.surface.areas;
-    const double sum = areas.empty() ? 0 : areas.back();
-    SkyMeans out;
-    if (!(sum > 0) || rays < 1)
-        return out;
-    const ray::FlushDenormals fast;
-    // The sums of all rays, and of those that begin inside of something opaque.
-    struct MeanSums {
-        double placed = 0;
-        double alone = 0;
-        double rays = 0;
-    };
-    MeanSums all;
-    MeanSums inside;
-    uint32_t blocker = ray::PlacedScenes::kNothing;
-    uint32_t near = ray::kNoTriangle;
-    for (int i = 0; i < rays; ++i) {
-        const double area = sum * (i + 0.5) / rays;
-        const size_t triangle =
-            static_cast<size_t>(std::lower_bound(areas.begin(), areas.end(), area) - areas.begin());
-        if (triangle >= areas.size())
-            continue;
-        const std::optional<SkySampler::PlacedTriangle> placed = sampler.placed(mesh, triangle);
-        if (!placed)
-            continue;
-        const bool both = !request.surface.opaque_slot(mesh.slot(triangle));
-        // Rays are as dense as the surface is before it is placed, which may stretch some of it.
-        const double own = areas[triangle] - (triangle > 0 ? areas[triangle - 1] : 0);
-        const double weight = own > 0 ? placed->area / own : 0;
-        // Every second point of the sequence lies in one half of its first axis: both sides have
-        // all points.
-        const SkySampler::SkyPlace place =
-            sampler.place(mesh, triangle, *placed, static_cast<uint32_t>(both ? i / 2 : i), near);
-        const SkySampler::SkyRay ray = sampler.ray(place, both && i % 2 == 1);
-        const double alone = ray.open && !sampler.hidden_alone(ray) ? 1 : 0;
-        const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
-        all.placed += weight * seen;
-        all.alone += weight * alone;
-        all.rays += weight;
-        if (seen == 0 && !both && sampler.lies_inside(mesh, triangle, *placed)) {
-            inside.alone += weight * alone;
-            inside.rays += weight;
-        }
-    }
-    if (inside.rays < all.rays) {
-        all.alone -= inside.alone;
-        all.rays -= inside.rays;
-    }
-    if (all.rays > 0) {
-        out.alone = all.alone / all.rays;
-        out.placed = all.placed / all.rays;
-    }
-    return out;
-}
-
-std::string bytes_of(const std::vector<SkyMeans>& means) {
-    std::string out(means.size() * 2 * sizeof(float), '\0');
-    for (size_t i = 0; i < means.size(); ++i) {
-        const float pair[] = {static_cast<float>(means[i].placed),
-                              static_cast<float>(means[i].alone)};
-        std::memcpy(out.data() + i * sizeof pair, pair, sizeof pair);
-    }
-    return out;
-}
-
-std::optional<std::vector<SkyMeans>> means_of(std::string_view bytes, size_t count) {
-    float pair[2];
-    if (bytes.size() != count * sizeof pair)
-        return {};
-    std::vector<SkyMeans> out(count);
-    for (size_t i = 0; i < count; ++i) {
-        std::memcpy(pair, bytes.data() + i * sizeof pair, sizeof pair);
-        // Things around another one hide more of its sky, never less.
-        if (!(pair[0] >= 0 && pair[0] <= pair[1] && pair[1] <= 1))
-            return {};
-        out[i] = {pair[0], pair[1]};
-    }
-    return out;
 }
 
 }  // namespace lodestone::light

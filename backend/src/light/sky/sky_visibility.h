@@ -17,16 +17,4 @@ namespace lodestone::light {
 /// not depend on the number of threads. cost: `rays` rays a vertex, and a quarter more for splits
 SkyShares sky_shares(const SkyRequest& request, const Job& job);
 
-/// The means, over the surface, of the shares of the whole request and of the surface alone, by so
-/// many rays.
-struct SkyMeans {
-    double placed = 1;
-    double alone = 1;
-};
-SkyMeans mean_sky_shares(const SkyRequest& request, int rays);
-
-/// The means of a list of placements as bytes that are kept, and back; none where they are damaged.
-std::string bytes_of(const std::vector<SkyMeans>& means);
-std::optional<std::vector<SkyMeans>> means_of(std::string_view bytes, size_t count);
-
 }  // namespace lodestone::light

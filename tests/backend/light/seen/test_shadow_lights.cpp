@@ -68,6 +68,11 @@ TEST(ShadowLights, LightIsThatOfTheSquareOfTheDistance) {
     area.kind = LightKind::Area;  // shines down
     EXPECT_GT(arriving(shadow_lights(std::span(&area, 1))[0], {}), 0);
     EXPECT_EQ(arriving(shadow_lights(std::span(&area, 1))[0], {{0, 0, 4}}), 0);
+    Light spot = area;
+    spot.kind = LightKind::Spot;
+    spot.spot_size = kPi / 2;
+    EXPECT_GT(arriving(shadow_lights(std::span(&spot, 1))[0], {{1, 0, 0}}), 0);
+    EXPECT_EQ(arriving(shadow_lights(std::span(&spot, 1))[0], {{3, 0, 0}}), 0);
 }
 
 TEST(ShadowLights, TheStrongestIsPickedAndOfTheOthersTheStronger) {

@@ -2,6 +2,7 @@
 // Guards how much of the sky surfaces see, by answers that are known.
 #include "backend/light/sky/sky_places.h"
 #include "base/parallel.h"
+#include "light/sky/sky_means.h"
 #include "scenes/damaged_files.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -133,6 +134,20 @@ TEST_F(SkyVisibility, OfALeafIsThatOfTheSideThatIsSeenAndOfAWallThatOfItsFront) 
         const double share = shares_of_first({{card, moved({2000, 2000, -1})}, {ceiling, {}}}).mean;
         EXPECT_NEAR(share, clear ? 1 : 0, 0.03);
     }
+}
+
+// A meadow was half as light as one of its flowers.
+TEST_F(SkyVisibility, CopiesOfALeafOnTheGroundAreAsLightAsOne) {
+    Material leaf;
+    leaf.alpha = 0.99;
+    leaf.alpha_mode = AlphaMode::Blend;
+    const ObjectIndex card = builder.mesh(shapes::quad(1, 1), {builder.material(leaf)});
+    const ObjectIndex ground = builder.mesh(shapes::quad(4000, 4000));
+    const std::vector<std::pair<ObjectIndex, Affine>> things = {{card, moved({2000, 2000, 0.01})},
+                                                                {ground, {}}};
+    EXPECT_NEAR(shares_of_first(things).mean, 1, 0.03);
+    EXPECT_NEAR(means_of_first(things).placed, 1, 0.03);
+    EXPECT_NEAR(means_of_first(things).alone, 1, 1e-6);
 }
 
 // Crowns were darker than Cycles': a leaf's open side had the mean with the one that faces inward.
@@ -389,7 +404,8 @@ TEST_F(SkyVisibility, RaysToEachSideOfALeafBeginAllOverIt) {
     // Close above the half that is near the first corner of both triangles.
     const auto half = static_cast<float>(std::sqrt(0.5));
     const ObjectIndex roof = builder.mesh(shapes::box({0, 0, .001f}, {half, half, .002f}));
-    EXPECT_NEAR(means_of_first({{leaf, {}}, {roof, {}}}).placed, 0.75, 0.02);
+    // One side sees half of the sky, the other all: they count as much as they see.
+    EXPECT_NEAR(means_of_first({{leaf, {}}, {roof, {}}}).placed, (0.25 + 1) / 1.5, 0.02);
 }
 
 // The normals of what is flattened were not numbers, so that it was as light as in the open.
