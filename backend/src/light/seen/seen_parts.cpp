@@ -29,15 +29,15 @@ constexpr double kMostRays = 1 << 20;  // Taste: as kRaysOfPixel
 // The width of a part, in distances between rays: a part of which an eighth is seen is met.
 // Taste: a larger value leaves out less, a smaller one misses more.
 constexpr double kPartWidth = 6;
-// The rays toward a part that no ray through the picture met, and those along suns; fewer, but one,
+// The rays toward a part that no ray through the picture met, and from it along lights; fewer, but one,
 // where all parts together would have more than the most.
 // Taste: more find parts of which less is seen.
 constexpr int kAims = 8;
-constexpr int kShadowAims = 4;  // Taste: as kAims
-// The pixels of which a part that is seen is missed by a ray through each in one of e cases.
-// Law: rays that meet an eighth of it.
-constexpr double kOftenMissed = 8;
+constexpr int kShadowAims = 4;         // Taste: as kAims
 constexpr size_t kMostAims = 1 << 21;  // Taste: some seconds
+// The pixels of a part, an eighth of which is seen, that rays through each miss in one of e cases.
+// Law: one ray is expected to meet it.
+constexpr double kOftenMissed = 8;
 // The mirrors in a row that a ray follows.
 // Taste: more find things deeper in mirrors.
 constexpr int kMostMirrors = 4;
@@ -171,7 +171,7 @@ private:
     void shade(const SightCrossing& place, const SightNormals& normals, LightPicker& picker,
                PcgRandom& random) {
         const double pixel = choose::pixel_size(view_, place.way);
-        for (const uint32_t number : picker.pick({place.point, normals.smooth}, {}, random)) {
+        for (const uint32_t number : picker.pick(place.point, normals.smooth, {}, random)) {
             const WayToLight way = way_to(lights_[number], place.point, random);
             SightWalk walk;
             walk.direction = way.direction;
@@ -305,6 +305,8 @@ private:
     /// are met where any of them is seen.
     int aims_at(uint32_t drawn, std::span<const uint32_t> triangles, const Bound& bound,
                 int most) const {
+        if (pyramid_.outside(bound))
+            return most;  // no ray through the picture comes near
         const Mesh& mesh = scene_.mesh(drawn);
         const glm::dmat3& linear = drawn_[drawn].world.linear;
         double area = 0;
@@ -315,8 +317,6 @@ private:
             const glm::dvec3 v = linear * (glm::dvec3(mesh.positions[t.z]) - a);
             area += glm::length(glm::cross(u, v)) / 2;
         }
-        if (pyramid_.outside(bound))
-            return most;  // no ray through the picture comes near
         const double cell =
             spacing_ * choose::pixel_size(view_, distance(bound, view_.camera.position));
         // Law: a surface that is turned anyhow shows half of itself.
@@ -402,11 +402,9 @@ private:
                         note_all(drawn, triangles, kShades);
                         return;
                     }
-                    // No ray through the picture came near what is outside of it.
-                    const int tries =
-                        pyramid_.outside(bound) ? aims : aims_at(drawn, triangles, bound, aims);
+                    const int tries = aims_at(drawn, triangles, bound, aims);
                     for (const uint32_t number :
-                         picker.pick({bound.center}, reaches_->of(drawn), random)) {
+                         picker.pick(bound.center, glm::dvec3(0.0), reaches_->of(drawn), random)) {
                         const ShadowLight& light = lights_[number];
                         if (!reaches_->seen(number, bound))
                             continue;

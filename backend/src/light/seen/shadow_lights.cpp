@@ -35,9 +35,11 @@ glm::dvec3 place_on(const ShadowLight& lamp, const glm::dvec3& from, PcgRandom& 
     }
     double u = random.uniform() - 0.5;
     double v = random.uniform() - 0.5;
-    if (light.round && u * u + v * v > 0.25) {
-        u /= 2;
-        v /= 2;
+    if (light.round) {  // as a disk: one number is its turn, the other its area
+        const double turn = 2 * kPi * u;
+        const double out = 0.5 * std::sqrt(v + 0.5);
+        u = out * std::cos(turn);
+        v = out * std::sin(turn);
     }
     return light.position + u * light.edge_u + v * light.edge_v;
 }
@@ -71,17 +73,17 @@ std::vector<ShadowLight> shadow_lights(std::span<const Light> lights) {
     return out;
 }
 
-double arriving(const ShadowLight& light, const LitPlace& place) {
-    const bool sided = place.normal != glm::dvec3(0.0);
+double arriving(const ShadowLight& light, const glm::dvec3& point, const glm::dvec3& normal) {
+    const bool sided = normal != glm::dvec3(0.0);
     if (light.sun)
-        return light.strength * (sided ? std::clamp(glm::dot(light.way, place.normal),
-                                                    std::min(light.radius, 1.0), 1.0)
-                                       : 1);
-    const glm::dvec3 way = light.light->position - place.point;
+        return light.strength *
+               (sided ? std::clamp(glm::dot(light.way, normal), std::min(light.radius, 1.0), 1.0)
+                      : 1);
+    const glm::dvec3 way = light.light->position - point;
     const double square = glm::dot(way, way) + light.radius * light.radius;
     double out = light.strength / std::max(square, 1e-9);
     if (sided) {
-        const double facing = glm::dot(way, place.normal) + light.radius;
+        const double facing = glm::dot(way, normal) + light.radius;
         out *= std::clamp(facing / std::sqrt(std::max(square, 1e-9)), 0.0, 1.0);
     }
     if (light.light->kind == LightKind::Point)
@@ -94,8 +96,8 @@ double arriving(const ShadowLight& light, const LitPlace& place) {
     return along > least || !(glm::length(way) > 0) ? out : 0;
 }
 
-std::span<const uint32_t> LightPicker::pick(const LitPlace& place, std::span<const uint32_t> among,
-                                            PcgRandom& random) {
+std::span<const uint32_t> LightPicker::pick(const glm::dvec3& point, const glm::dvec3& normal,
+                                            std::span<const uint32_t> among, PcgRandom& random) {
     const size_t count = among.empty() ? lights_.size() : among.size();
     const auto number = [&](size_t i) {
         return among.empty() ? static_cast<uint32_t>(i) : among[i];
@@ -104,7 +106,7 @@ std::span<const uint32_t> LightPicker::pick(const LitPlace& place, std::span<con
     double sum = 0;
     size_t most = 0;
     for (size_t i = 0; i < count; ++i) {
-        arriving_[i] = arriving(lights_[number(i)], place);
+        arriving_[i] = arriving(lights_[number(i)], point, normal);
         sum += arriving_[i];
         if (arriving_[i] > arriving_[most])
             most = i;

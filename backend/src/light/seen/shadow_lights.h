@@ -23,26 +23,22 @@ struct ShadowLight {
 /// The lights that throw shadows, those that take light away, too. The lights must outlive them.
 std::vector<ShadowLight> shadow_lights(std::span<const Light> lights);
 
-/// A place that is lit, and the side that it turns to lights.
-struct LitPlace {
-    glm::dvec3 point{0.0};
-    glm::dvec3 normal{0.0};  // has length 1; 0: all sides
-};
+/// The light that a point gets where nothing hides it, W/m^2, about: a lamp counts as its middle.
+/// `normal`: the side that it turns to lights, of length 1; 0: all sides. Not arriving_radiance(),
+/// which asks an area for up to 64 parts, and needs a side.
+double arriving(const ShadowLight& light, const glm::dvec3& point, const glm::dvec3& normal);
 
-/// The light that a place gets where nothing hides it, W/m^2, about: a lamp counts as its middle.
-double arriving(const ShadowLight& light, const LitPlace& place);
-
-/// Picks lights for one place after the other: the one that lights the place most, and one of the
-/// others by chance, as often as it lights, or none where they light it little. For one thread.
+/// Picks lights for one point after the other: the one that lights it most, and one of the others by
+/// chance, as often as it lights, or none where they light it little. For one thread.
 class LightPicker {
 public:
     /// The lights must outlive it.
     explicit LightPicker(std::span<const ShadowLight> lights) : lights_(lights) {}
 
     /// The numbers of the lights that are picked among some (all of them where `among` is empty):
-    /// none to two.
-    std::span<const uint32_t> pick(const LitPlace& place, std::span<const uint32_t> among,
-                                   PcgRandom& random);
+    /// none to two. `normal`: as for arriving().
+    std::span<const uint32_t> pick(const glm::dvec3& point, const glm::dvec3& normal,
+                                   std::span<const uint32_t> among, PcgRandom& random);
 
 private:
     std::span<const ShadowLight> lights_;

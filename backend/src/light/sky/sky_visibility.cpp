@@ -323,14 +323,14 @@ private:
             double count = 0;     // of rays
             double all_seen = 0;  // those inside of something too
             double all_rays = 0;
+            bool opaque = true;
             /// See of_side_that_is_seen().
             double factor() const {
                 const double side = rays / 2;
-                return back > 0 || !opaque
-                           ? of_side_that_is_seen((seen - back) / side, back / side, count / 2)
-                           : 1;
+                return opaque || !(side > 0)
+                           ? 1
+                           : of_side_that_is_seen((seen - back) / side, back / side, count / 2);
             }
-            bool opaque = true;
         };
         std::vector<GroupShares> sums;
         double seen = 0;
@@ -374,12 +374,11 @@ private:
                 }
             }
         }
-        for (size_t i = 0; i < groups.size(); ++i) {
-            const GroupShares& group = sums[groups[i]];
-            const TriangleShares& shares = shares_[i / 3];
-            const auto placed = sampler_.placed(mesh, i / 3);
-            if (!group.opaque && placed && shares.rays[0] + shares.rays[1] + shares.rays[2] > 0)
-                seen += placed->area / 3 * shares.share() * (group.factor() - 1);
+        for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const auto placed = opaque(i) ? std::nullopt : sampler_.placed(mesh, i);
+            for (size_t corner = 0; placed && corner < 3; ++corner)
+                seen += placed->area / 3 * shares_[i].share() *
+                        (sums[groups[3 * i + corner]].factor() - 1);
         }
         out.mean = area > 0 ? seen / area : (all_area > 0 ? all_seen / all_area : 1);
         out.corners.reserve(groups.size());

@@ -10,6 +10,9 @@ using namespace lodestone::light;
 
 namespace {
 
+const glm::dvec3 kOrigin(0.0);
+const glm::dvec3 kAllSides(0.0);
+
 Light sun(double power) {
     Light out;
     out.power = power;
@@ -25,15 +28,15 @@ Light lamp(const glm::dvec3& position, double times = 1) {
     return out;
 }
 
-/// How often each of the lights is picked for a place.
-std::vector<int> picked(const std::vector<Light>& lights, const LitPlace& place, int times,
+/// How often each of the lights is picked for the origin.
+std::vector<int> picked(const std::vector<Light>& lights, const glm::dvec3& normal, int times,
                         std::span<const uint32_t> among = {}) {
     const std::vector<ShadowLight> all = shadow_lights(lights);
     LightPicker picker(all);
     PcgRandom random(1);
     std::vector<int> out(all.size(), 0);
     for (int i = 0; i < times; ++i) {
-        for (const uint32_t number : picker.pick(place, among, random))
+        for (const uint32_t number : picker.pick(glm::dvec3(0.0), normal, among, random))
             ++out[number];
     }
     return out;
@@ -43,7 +46,7 @@ std::vector<int> picked(const std::vector<Light>& lights, const LitPlace& place,
 
 TEST(ShadowLights, OfNoneNoneIsPicked) {
     EXPECT_TRUE(shadow_lights({}).empty());
-    EXPECT_TRUE(picked({}, {}, 3).empty());
+    EXPECT_TRUE(picked({}, kAllSides, 3).empty());
     Light clear = sun(1);
     clear.shadow = false;
     Light broken = lamp({std::numeric_limits<double>::quiet_NaN(), 0, 0});
@@ -51,43 +54,43 @@ TEST(ShadowLights, OfNoneNoneIsPicked) {
 }
 
 TEST(ShadowLights, OneIsAlwaysPickedAndOnce) {
-    EXPECT_EQ(picked({sun(-2)}, {}, 5), std::vector<int>{5});  // takes light away
-    EXPECT_EQ(picked({lamp({0, 0, 3})}, {{0, 0, 0}, {0, 0, 1}}, 5), std::vector<int>{5});
-    EXPECT_EQ(picked({lamp({0, 0, -3})}, {{0, 0, 0}, {0, 0, 1}}, 5), std::vector<int>{0});
+    EXPECT_EQ(picked({sun(-2)}, kAllSides, 5), std::vector<int>{5});  // takes light away
+    EXPECT_EQ(picked({lamp({0, 0, 3})}, {0, 0, 1}, 5), std::vector<int>{5});
+    EXPECT_EQ(picked({lamp({0, 0, -3})}, {0, 0, 1}, 5), std::vector<int>{0});
 }
 
 TEST(ShadowLights, LightIsThatOfTheSquareOfTheDistance) {
     const std::vector<Light> lights = {sun(3), lamp({0, 0, 2}, 8)};
     const std::vector<ShadowLight> all = shadow_lights(lights);
-    EXPECT_NEAR(arriving(all[0], {}), 3, 1e-12);
-    EXPECT_NEAR(arriving(all[1], {}), 2, 1e-12);
-    EXPECT_NEAR(arriving(all[1], {{0, 0, 1}}), 8, 1e-12);
+    EXPECT_NEAR(arriving(all[0], kOrigin, kAllSides), 3, 1e-12);
+    EXPECT_NEAR(arriving(all[1], kOrigin, kAllSides), 2, 1e-12);
+    EXPECT_NEAR(arriving(all[1], {0, 0, 1}, kAllSides), 8, 1e-12);
     const glm::dvec3 aslant(std::sqrt(0.75), 0, 0.5);
-    EXPECT_NEAR(arriving(all[1], {{0, 0, 0}, aslant}), 1, 1e-12);
+    EXPECT_NEAR(arriving(all[1], kOrigin, aslant), 1, 1e-12);
     Light area = lamp({0, 0, 2});
     area.kind = LightKind::Area;  // shines down
-    EXPECT_GT(arriving(shadow_lights(std::span(&area, 1))[0], {}), 0);
-    EXPECT_EQ(arriving(shadow_lights(std::span(&area, 1))[0], {{0, 0, 4}}), 0);
+    EXPECT_GT(arriving(shadow_lights(std::span(&area, 1))[0], kOrigin, kAllSides), 0);
+    EXPECT_EQ(arriving(shadow_lights(std::span(&area, 1))[0], {0, 0, 4}, kAllSides), 0);
     Light spot = area;
     spot.kind = LightKind::Spot;
     spot.spot_size = kPi / 2;
-    EXPECT_GT(arriving(shadow_lights(std::span(&spot, 1))[0], {{1, 0, 0}}), 0);
-    EXPECT_EQ(arriving(shadow_lights(std::span(&spot, 1))[0], {{3, 0, 0}}), 0);
+    EXPECT_GT(arriving(shadow_lights(std::span(&spot, 1))[0], {1, 0, 0}, kAllSides), 0);
+    EXPECT_EQ(arriving(shadow_lights(std::span(&spot, 1))[0], {3, 0, 0}, kAllSides), 0);
 }
 
 TEST(ShadowLights, TheStrongestIsPickedAndOfTheOthersTheStronger) {
     const std::vector<Light> lights = {lamp({0, 0, 1}, 0.1), lamp({0, 0, 1}, 1),
                                        lamp({0, 0, 1}, 0.3)};
-    const std::vector<int> found = picked(lights, {}, 4000);
+    const std::vector<int> found = picked(lights, kAllSides, 4000);
     EXPECT_EQ(found[1], 4000);
     EXPECT_EQ(found[0] + found[2], 4000);
     EXPECT_NEAR(found[2], 3000, 200);
     const std::vector<uint32_t> among = {0, 2};
-    EXPECT_EQ(picked(lights, {}, 100, among), (std::vector<int>{100, 0, 100}));
+    EXPECT_EQ(picked(lights, kAllSides, 100, among), (std::vector<int>{100, 0, 100}));
 }
 
 TEST(ShadowLights, FaintOnesAreSeldomPicked) {
-    const std::vector<int> found = picked({sun(1), lamp({0, 0, 1}, 0.001)}, {}, 10000);
+    const std::vector<int> found = picked({sun(1), lamp({0, 0, 1}, 0.001)}, kAllSides, 10000);
     EXPECT_EQ(found[0], 10000);
     EXPECT_NEAR(found[1], 160, 60);
 }
