@@ -2,16 +2,16 @@
 // Guards how many rays find the sky's light for pictures of different sizes.
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/sky_occlusion.h"
+#include "scenes/with_rays.h"
 
 #include <set>
 
 using namespace lodestone;
 using namespace lodestone::povray;
 
-TEST(SkyRays, ALargerPictureHasMoreAndASmallerOneKeepsThem) {
-    std::string reason;
-    if (!ray::available(&reason))
-        GTEST_SKIP() << reason;
+class SkyRays : public WithRays {};
+
+TEST_F(SkyRays, ALargerPictureHasMoreAndASmallerOneKeepsThem) {
     std::filesystem::remove_all(own_scratch());  // with what an earlier run kept
     scenes::Builder builder;
     builder.model.world.color = glm::dvec3(0.5);
