@@ -251,8 +251,11 @@ class View:
 
 
 def pixels(path: Path) -> numpy.ndarray:
-    """Displayed values, [rows][columns][4], 0...1."""
-    from PIL import Image
+    """Displayed values, [rows][columns][4], 0...1. Raises Missing."""
+    try:
+        from PIL import Image
+    except ModuleNotFoundError:
+        raise Missing("there is no PIL (Debian: python3-pil)") from None
 
     return numpy.asarray(Image.open(path).convert("RGBA"), dtype=float) / 255
 

@@ -252,6 +252,7 @@ TEST_F(SeenPartsTest, WhatALampMayShadeBehindAWallWasNeeded) {
     add({12, 0, 10}, {0.1, 60, 60});
     const size_t before = add({8, 0, 3}, {0.5, 0.5, 0.5});
     std::vector<size_t> behind;
+    behind.reserve(20);
     for (int i = 0; i < 20; ++i)
         behind.push_back(add({16, i - 10.0, 0}, {0.5, 0.5, 0.5}));
     const SeenParts found = parts();
