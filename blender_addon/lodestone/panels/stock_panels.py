@@ -26,30 +26,41 @@ _LEFT_OUT = {
     "VIEWLAYER_PT_filter",
     "VIEWLAYER_PT_layer_passes",
 }
-_LEFT_OUT_PREFIXES = ("LODESTONE_", "VIEWLAYER_PT_freestyle")
+_LEFT_OUT_PREFIXES = ("VIEWLAYER_PT_freestyle",)
 
 
 def _panels():
-    for name in dir(bpy.types):
-        panel = getattr(bpy.types, name, None)
-        engines = getattr(panel, "COMPAT_ENGINES", None)
-        # The node editor's copy of a panel shares the very set of its original
-        original = name.removeprefix("NODE_")
-        if not isinstance(engines, set) or original.startswith(_LEFT_OUT_PREFIXES):
+    """All registered panels of others that say for which engines they are. Not by the names of
+    bpy.types: asking for each of its thousands takes as long as all else of registering."""
+    found, seen = bpy.types.Panel.__subclasses__(), set()
+    while found:
+        panel = found.pop()
+        if panel in seen:
             continue
-        if "BLENDER_RENDER" in engines and original not in _LEFT_OUT:
+        seen.add(panel)
+        found += panel.__subclasses__()
+        ours = panel.__name__.startswith("LODESTONE_")
+        if panel.is_registered and not ours and isinstance(_engines(panel), set):
             yield panel
 
 
+def _engines(panel):
+    return getattr(panel, "COMPAT_ENGINES", None)
+
+
+def _joins(panel):
+    # The node editor's copy of a panel shares the very set of its original
+    original = panel.__name__.removeprefix("NODE_")
+    if original in _LEFT_OUT or original.startswith(_LEFT_OUT_PREFIXES):
+        return False
+    return "BLENDER_RENDER" in _engines(panel)
+
+
 def register():
-    for panel in _panels():
-        panel.COMPAT_ENGINES.add(ENGINE)
+    for panel in filter(_joins, _panels()):
+        _engines(panel).add(ENGINE)
 
 
 def unregister():
-    for name in dir(bpy.types):
-        if name.startswith("LODESTONE_"):
-            continue
-        engines = getattr(getattr(bpy.types, name, None), "COMPAT_ENGINES", None)
-        if isinstance(engines, set):
-            engines.discard(ENGINE)
+    for panel in _panels():
+        _engines(panel).discard(ENGINE)
