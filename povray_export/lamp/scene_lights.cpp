@@ -79,13 +79,7 @@ std::string grouped_text(const light::LightPlan& plan,
     return out;
 }
 
-void name_slow_lamps(const light::LightPlan& plan, Problems& problems) {
-    // The shadow rays to lamps from a point, on average.
-    // Taste: with fewer, other things take most of the time.
-    constexpr double kMany = 40;
-    const double rays = light::mean_lamp_rays(plan);
-    if (!(rays >= kMany))
-        return;
+uint64_t soft_lamps(const light::LightPlan& plan) {
     std::set<uint32_t> soft;
     for (const std::vector<light::GroupLight>& group : plan.groups) {
         for (const light::GroupLight& one : group) {
@@ -93,13 +87,7 @@ void name_slow_lamps(const light::LightPlan& plan, Problems& problems) {
                 soft.insert(one.light);
         }
     }
-    if (soft.empty())
-        return;
-    problems.push_back(
-        {"", Severity::Info, "slow_lamps",
-         text(soft.size(), " lights with soft shadows: from each point of the picture about ",
-              std::lround(rays),
-              " shadow rays go to lamps; fewer Area Samples or larger Lights take less time")});
+    return soft.size();
 }
 
 }  // namespace lodestone::povray

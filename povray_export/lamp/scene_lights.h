@@ -51,7 +51,7 @@ std::string grouped_text(const light::LightPlan& plan,
                          const std::map<light::GroupLight, std::string>& names,
                          const std::vector<std::string>& objects);
 
-/// Names lights that make a picture slow: lamps, and those that stand for several.
-void name_slow_lamps(const light::LightPlan& plan, Problems& problems);
+/// How many lamps, and lights that stand for several, have soft shadows anywhere.
+uint64_t soft_lamps(const light::LightPlan& plan);
 
 }  // namespace lodestone::povray

@@ -368,7 +368,7 @@ private:
             light::plan_lights(model_, renderer_, drawn, view_, demands, problems_, job_);
         if (!plan.empty())
             report_.lights_each = plan.lights_each;
-        name_slow_lamps(plan, problems_);
+        report_.soft_lamps = soft_lamps(plan);
         return plan;
     }
 
@@ -428,9 +428,11 @@ private:
         bound = magnified(bound, times);
         const light::LightPlan plan = light_plan(occluders);
         std::string lights;
-        if (lit())
-            report_.shadow_rays = static_cast<double>(sky_.lights.size()) +
-                                  light::mean_shadow_rays(plan, model_.lights);
+        if (lit()) {
+            report_.lamp_rays = light::mean_lamp_rays(plan, model_.lights);
+            report_.shadow_rays = static_cast<double>(sky_.lights.size()) + report_.lamp_rays +
+                                  light::mean_sun_rays(plan, model_.lights);
+        }
         const SceneLights scene_lights(view_, occluders, bound, times, shading_, light_sampling(),
                                        problems_);
         const std::map<light::GroupLight, std::string> names = scene_lights.declare(lights, plan);

@@ -5,16 +5,21 @@ import os
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import bmesh
 import bpy
 
 import blender_scenes as scenes
+from blender_test_labels import Layout
 from lodestone.bridge import quality_settings
 from lodestone.bridge.live import viewport_camera
 from lodestone.bridge.scene import quality_lenses
 from lodestone.core.native import lodestone_native as native
 from lodestone.core.picture import quality_tree
+from lodestone.core.problems import INFO, Problem
+from lodestone.core.session.addon_session import addon_session
+from lodestone.core.session.last_check import Check
 
 NUMBERS = [control for control in quality_tree.CONTROLS if control.least is not None]
 
@@ -110,6 +115,43 @@ class Controls(unittest.TestCase):
                 self.assertTrue(control.least <= found <= control.most, (control.key, value))
         self.settings.pixel_error_render = float("nan")
         self.assertTrue(0.0 <= quality_settings.of_scene(self.settings).pixel_error <= 1024.0)
+
+
+class SlowPictures(unittest.TestCase):
+    """What a slow picture's row in Problems offers."""
+
+    def setUp(self):
+        self.scene = scenes.fresh()
+        self.settings = self.scene.lodestone
+        lamps = Problem("", INFO, "slow_lamps", "25 lamps: about 90 % of the time")
+        other = Problem("", INFO, "slow_weather", "Nothing helps against it")
+        addon_session().checks[self.scene.name] = Check((lamps, other), {})
+
+    def buttons(self):
+        layout = Layout([])
+        panel = bpy.types.LODESTONE_RENDER_PT_problems
+        panel.draw(SimpleNamespace(layout=layout), bpy.context)
+        return layout.operators
+
+    def test_faster_changes_the_control_step_by_step(self):
+        self.assertIn("lodestone.draw_faster", self.buttons())
+        found = []
+        while self.settings.area_samples > 1:
+            self.assertEqual(bpy.ops.lodestone.draw_faster(code="slow_lamps"), {"FINISHED"})
+            found.append(self.settings.area_samples)
+        self.assertEqual(found, sorted(found, reverse=True))
+        bpy.ops.lodestone.draw_faster(code="slow_lamps")
+        self.assertEqual(self.settings.lights, 4.0)
+        self.assertEqual(
+            quality_settings.overrides(self.settings), {"area_samples": 1, "lights": 4.0}
+        )
+
+    def test_without_a_control_that_helps_there_is_no_button(self):
+        self.assertEqual(bpy.ops.lodestone.draw_faster(code="slow_weather"), {"CANCELLED"})
+        self.assertEqual(bpy.ops.lodestone.draw_faster(code="slow_reference"), {"CANCELLED"})
+        self.settings.area_samples, self.settings.lights = 1, 64.0
+        self.assertNotIn("lodestone.draw_faster", self.buttons())
+        self.assertEqual(quality_settings.overrides(self.settings).keys(), {"area_samples", "lights"})
 
 
 class Files(unittest.TestCase):

@@ -15,6 +15,7 @@ from lodestone_native import Antialias, Camera, CostModel
 WORK = cost_model.Work(
     1_000_000 * CostModel().triangle_bytes, 1_000_000, 640 * 360, 640, 360, 1, 1, 2
 )
+LAMPLESS = {"lamp_rays": 0.0, "soft_lamps": 0}
 CAMERA = Camera("C", False, (0, 0, 2), (0, 1, 0), (1, 0, 0), (0, 0, 0.5), 0.1, aperture=0.2)
 
 
@@ -60,7 +61,7 @@ class Cost(unittest.TestCase):
         blurred = cost_model.predict(replace(WORK, blurred=True)).trace_cpu_s
         self.assertAlmostEqual(blurred, sharp * 45 / WORK.samples)  # both at the usual antialiasing
         summary = SimpleNamespace(bytes=1, triangles=1)
-        exported = SimpleNamespace(cut_triangles=0, shadow_rays=1.0, left_out_bytes=0)
+        exported = SimpleNamespace(cut_triangles=0, shadow_rays=1.0, left_out_bytes=0, **LAMPLESS)
         quality = quality_tree.quality(1.0)
         for camera, expected in (
             (CAMERA, True),
@@ -77,7 +78,7 @@ class Cost(unittest.TestCase):
         summary = SimpleNamespace(bytes=1000, triangles=10)
 
         def work(**more):
-            known = {"cut_triangles": 0, "shadow_rays": 0.0, "left_out_bytes": 0}
+            known = {"cut_triangles": 0, "shadow_rays": 0.0, "left_out_bytes": 0, **LAMPLESS}
             exported = SimpleNamespace(**{**known, **more})
             return cost_model.Work.of(summary, view, exported, Antialias.FINAL, 1, quality)
 
@@ -91,7 +92,8 @@ class Cost(unittest.TestCase):
         view = SimpleNamespace(camera=CAMERA, width=4, height=3, border=(0, 0, 0, 0))
         summary = SimpleNamespace(bytes=1000, triangles=10)
         for left_out, expected in ((0, 1000), (700, 300), (2000, 0)):
-            exported = SimpleNamespace(cut_triangles=0, shadow_rays=0.0, left_out_bytes=left_out)
+            known = {"cut_triangles": 0, "shadow_rays": 0.0, **LAMPLESS}
+            exported = SimpleNamespace(**known, left_out_bytes=left_out)
             quality = quality_tree.quality(1.0)
             work = cost_model.Work.of(summary, view, exported, Antialias.FINAL, 1, quality)
             self.assertEqual(work.bytes, expected)

@@ -1177,6 +1177,8 @@ typedef struct lds_export_report {
     uint64_t cut_triangles; /* about how many triangles masks that are cut out become, beyond those
                                of the cut; within its memory budget but for an eighth */
     double shadow_rays;     /* from a point of the picture to suns and lamps, about, on average */
+    double lamp_rays;       /* of these, those to lamps */
+    uint64_t soft_lamps;    /* lamps, and lights that stand for several, with soft shadows */
 } lds_export_report;
 /* Writes scene.pov, scene.ini and r/<16 hex>.inc into folder, with the model's lights and world. */
 LDS_API lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,

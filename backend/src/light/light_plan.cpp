@@ -339,17 +339,16 @@ int LightPlan::sun_rays(uint32_t light) const {
     return sun == suns.end() ? 0 : sun->rays;
 }
 
-double mean_lamp_rays(const LightPlan& plan) {
-    return kRaysOfLamp * plan.lights_each;
+double mean_lamp_rays(const LightPlan& plan, std::span<const Light> lights) {
+    const auto lamps = static_cast<double>(std::count_if(lights.begin(), lights.end(), is_lamp));
+    return kRaysOfLamp * (plan.empty() ? lamps : plan.lights_each);
 }
 
-double mean_shadow_rays(const LightPlan& plan, std::span<const Light> lights) {
-    double sum = mean_lamp_rays(plan);
+double mean_sun_rays(const LightPlan& plan, std::span<const Light> lights) {
+    double sum = 0;
     for (uint32_t i = 0; i < lights.size(); ++i) {
         if (lights[i].kind == LightKind::Sun)
             sum += sun_shadow_rays(std::max(1, plan.sun_rays(i)));
-        else if (plan.empty() && is_lamp(lights[i]))
-            sum += kRaysOfLamp;
     }
     return sum;
 }

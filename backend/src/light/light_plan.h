@@ -126,8 +126,9 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
 
 /// The shadow rays that a renderer casts to the lamps of a plan from a point of the view, in the
 /// mean, about: fewer than `shadow_rays`, for from most points all of a lamp is seen, or none of it.
-double mean_lamp_rays(const LightPlan& plan);
-/// The same to all lights; a sun that is not in the plan counts as sharp.
-double mean_shadow_rays(const LightPlan& plan, std::span<const Light> lights);
+/// Without a plan each lamp counts as sharp.
+double mean_lamp_rays(const LightPlan& plan, std::span<const Light> lights);
+/// The same to suns; one that is not in the plan counts as sharp.
+double mean_sun_rays(const LightPlan& plan, std::span<const Light> lights);
 
 }  // namespace lodestone::light

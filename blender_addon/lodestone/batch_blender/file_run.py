@@ -192,6 +192,7 @@ class FileRun:
                     )  # fmt: skip
                     made.append({**work.about, **self.verb.make(work), **built})
                     self.problems.extend_native(model.problems())
+                    self.problems.extend(work.problems)
                     self._tell_picture(picture.out, made[-1])
                     if self._folders.shared is not None:
                         used |= used_files(self._folders.shared.path)

@@ -13,6 +13,7 @@ from ..core.batch.file_jobs import FileJob, PictureRequest
 from ..core.picture.compare_pictures import Compared
 from ..core.picture.cost_model import CostMemory
 from ..core.picture.picture_maker import Picture, SceneFolder, Settings
+from ..core.problems import Problems
 from ..core.store import store_path
 from . import picture_files
 
@@ -65,6 +66,7 @@ class BlenderPictureWork:
             bakes=str(store),
         )
         self.new_job = work.new_job
+        self.problems = Problems()
         self._scene: bpy.types.Scene = scene
         self._folders, self._work, self._say = folders, work, say
 
@@ -85,12 +87,14 @@ class BlenderPictureWork:
         return self._folders.folder(self.store, self.request.out)
 
     def save(self, made: Picture) -> None:
+        self.problems.extend(made.problems)
         out, with_alpha = Path(self.request.out), self.request.covered_only
         picture_files.save(self._scene, made.path, out, with_alpha, self.settings.stamp())
         if self.job.keep_exr:
             picture_files.copy_exr(made.path, out.with_suffix(".exr"))
 
     def save_compared(self, made: Compared) -> dict[str, str]:
+        self.problems.extend(made.pictures[-1].problems)
         return picture_files.save_compared(self._scene, made, Path(self.request.out), self.settings)
 
     def save_thumbnail(self) -> None:

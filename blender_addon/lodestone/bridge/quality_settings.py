@@ -58,6 +58,12 @@ def ray_classes(settings: Any) -> int:
     )
 
 
+def override(settings: Any, key: str, value: quality_tree.Value) -> None:
+    """Gives a control a value of its own."""
+    control = quality_tree.CONTROL[key]
+    setattr(settings, key if control.least is None else OWN + key, value)
+
+
 def inherit(settings: Any, key: str) -> None:
     """Takes an override back."""
     control = quality_tree.CONTROL[key]

@@ -23,8 +23,6 @@ class Problem:
     """A problem. `object` is the user's name of the thing, "" for the setup; `code` is snake_case
     and stable. `kind` is one of KINDS or "", `library` the path the thing is linked from, "" for a
     local one.
-
-    `kind` is one of KINDS or "", `library` the path the thing is linked from, "" for a local one.
     """
 
     object: str

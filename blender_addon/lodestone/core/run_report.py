@@ -73,6 +73,8 @@ def export_part(report: native.records.ExportReport) -> dict[str, Any]:
         "left_out_bytes": report.left_out_bytes,
         "sky_copies": report.sky_copies,
         "shadow_rays": report.shadow_rays,
+        "lamp_rays": report.lamp_rays,
+        "soft_lamps": report.soft_lamps,
         "cut_triangles": report.cut_triangles,
     }
 

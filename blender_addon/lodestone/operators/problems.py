@@ -4,8 +4,9 @@
 import bpy
 from bpy.props import StringProperty
 
-from ..bridge import datablock_ids, ignored_problems
+from ..bridge import datablock_ids, ignored_problems, quality_settings
 from ..core import problem_causes
+from ..core.picture import slow_causes
 from ..core.session.addon_session import addon_session
 from .polled_operator import InObjectMode, Polled
 
@@ -145,6 +146,40 @@ def text_of(context, key=""):
     return "\n".join([*lines, *([exact] if exact else [])]) + "\n"
 
 
+def remedy(context, code):
+    """What makes pictures of the scene faster that have a problem with this code, or None."""
+    return slow_causes.remedy(code, quality_settings.of_scene(context.scene.lodestone))
+
+
+class LODESTONE_OT_draw_faster(Polled, bpy.types.Operator):
+    bl_idname = "lodestone.draw_faster"
+    bl_label = "Faster"
+    bl_description = "Change the control that makes the next picture faster"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    code: StringProperty(options={"HIDDEN"})
+
+    @classmethod
+    def description(cls, context, properties):
+        faster = remedy(context, properties.code)
+        return f"Draw the next picture with {faster.words}" if faster else cls.bl_description
+
+    @classmethod
+    def refused(cls, context):
+        if datablock_ids.library_of(context.scene):
+            return "The scene is linked: its controls are set in its own file"
+        return ""
+
+    def execute(self, context):
+        faster = remedy(context, self.code)
+        if faster is None:
+            self.report({"WARNING"}, "No control makes it faster")
+            return {"CANCELLED"}
+        quality_settings.override(context.scene.lodestone, faster.key, faster.after)
+        self.report({"INFO"}, f"The next picture is drawn with {faster.words}")
+        return {"FINISHED"}
+
+
 class _Ignoring(Polled):
     @classmethod
     def refused(cls, context):
@@ -189,6 +224,7 @@ class LODESTONE_OT_restore_problems(_Ignoring, bpy.types.Operator):
 _CLASSES = (
     LODESTONE_OT_select_problem,
     LODESTONE_OT_copy_problems,
+    LODESTONE_OT_draw_faster,
     LODESTONE_OT_ignore_problem,
     LODESTONE_OT_restore_problems,
 )

@@ -41,7 +41,7 @@ class LODESTONE_RENDER_PT_problems(EnginePanel, Panel):
             return
         column = layout.column(align=True)
         for cause in found.shown[:ROWS]:
-            _draw_cause(column, cause)
+            _draw_cause(context, column, cause)
         more = len(found.shown) - ROWS
         if more > 0:
             column.label(text=f"and {more:,} more: Copy lists them", icon="BLANK1")
@@ -58,11 +58,13 @@ class LODESTONE_RENDER_PT_problems(EnginePanel, Panel):
             row.operator("lodestone.restore_problems", text="Restore")
 
 
-def _draw_cause(column, cause):
+def _draw_cause(context, column, cause):
     row = column.row(align=True)
     row.label(text=cause.sentence, icon=ICONS[cause.severity])
     if cause.code == "povray_missing":
         row.operator("preferences.addon_show", text="", icon="PREFERENCES").module = _ADDON
+    if operators.remedy(context, cause.code):
+        row.operator("lodestone.draw_faster", text="Faster").code = cause.code
     if cause.objects:
         select = row.operator("lodestone.select_problem", text="", icon="RESTRICT_SELECT_OFF")
         select.key = cause.key

@@ -85,6 +85,8 @@ class Work:
     blurred: bool = False  # has depth of field
     depth: int = 3  # samples along the side of a pixel that gets more of them
     exact: bool = False  # everything is drawn as it is, masks too
+    lamp_rays: float = 0.0  # those of shadow_rays that go to lamps
+    soft_lamps: int = 0
 
     @property
     def samples(self) -> float:
@@ -120,7 +122,8 @@ class Work:
         blurred = view.camera.aperture > 0.0 and not view.camera.orthographic
         return cls(
             *sums, *whole, exported.shadow_rays, antialias, threads, rays, blurred,
-            quality.antialias_depth, quality.pixel_error <= 0.0,
+            quality.antialias_depth, quality.pixel_error <= 0.0, exported.lamp_rays,
+            exported.soft_lamps,
         )  # fmt: skip
 
 

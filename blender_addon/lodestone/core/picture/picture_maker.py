@@ -13,8 +13,9 @@ from typing import Any
 from .. import locked_folder, run_report, stable_ids
 from ..kind_words import DRAWN_KINDS
 from ..native import lodestone_native as native
+from ..problems import Problem
 from ..store import store_path
-from . import cost_model, quality_tree, unseen_detail
+from . import cost_model, quality_tree, slow_causes, unseen_detail
 
 PICTURE = "picture.exr"
 _PICTURE_NAME = re.compile(r"\bi/[0-9a-f]{16}\.\w+")
@@ -122,6 +123,7 @@ class Picture:
     parts: dict[str, Any] = field(default_factory=dict)
     in_use: dict[str, dict[int, int]] = field(default_factory=dict)  # uid: {LOD: occurrences}
     predicted: cost_model.Prediction | None = None  # before it was rendered
+    problems: list[Problem] = field(default_factory=list)  # what makes it slow
 
 
 def cut_and_export(
@@ -203,7 +205,9 @@ def make_picture(
     parts["povray"] = run_report.povray_part(ran)
     parts["predicted"] = predicted.part()
     parts["pixel_error"] = settings.pixel_error
-    return Picture(folder / PICTURE, parts, in_use, predicted)
+    took = ran.parse_cpu_s + ran.trace_cpu_s
+    slow = slow_causes.problems(work, settings.quality, took)
+    return Picture(folder / PICTURE, parts, in_use, predicted, slow)
 
 
 def make_identities(

@@ -15,6 +15,7 @@ from ...file_names import folder_name
 from ...picture.compare_pictures import Compared
 from ...picture.cost_model import StoreCosts
 from ...picture.picture_maker import Picture, SceneFolder, Settings
+from ...problems import Problems
 from ..file_jobs import FileJob, PictureRequest
 from .verb_options import add_common
 
@@ -32,6 +33,7 @@ class PictureWork(Protocol):
     size: tuple[int, int]
     settings: Settings
     costs: StoreCosts
+    problems: Problems
 
     def new_job(self, stage: str) -> Any:
         """A job of the library, whose progress is told under the name of a stage."""
