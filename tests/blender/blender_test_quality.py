@@ -151,7 +151,9 @@ class SlowPictures(unittest.TestCase):
         self.assertEqual(bpy.ops.lodestone.draw_faster(code="slow_reference"), {"CANCELLED"})
         self.settings.area_samples, self.settings.lights = 1, 64.0
         self.assertNotIn("lodestone.draw_faster", self.buttons())
-        self.assertEqual(quality_settings.overrides(self.settings).keys(), {"area_samples", "lights"})
+        self.assertEqual(
+            quality_settings.overrides(self.settings).keys(), {"area_samples", "lights"}
+        )
 
 
 class Files(unittest.TestCase):

@@ -211,7 +211,6 @@ class _Run:
             modifiers = self._modifiers(extraction, camera_object, closing)
             self.settings = replace(self.settings, border=border, modifiers=modifiers)
             made, image = self._made_before_eyes(model, view, size, placed)
-            self.problems.extend_native(model.problems())
             self.problems.extend(made.problems)
             if levels and not self.engine.is_animation:
                 native.release_meshes(model)

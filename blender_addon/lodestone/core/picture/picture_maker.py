@@ -13,7 +13,7 @@ from typing import Any
 from .. import locked_folder, run_report, stable_ids
 from ..kind_words import DRAWN_KINDS
 from ..native import lodestone_native as native
-from ..problems import Problem
+from ..problems import Problems
 from ..store import store_path
 from . import cost_model, quality_tree, slow_causes, unseen_detail
 
@@ -123,7 +123,7 @@ class Picture:
     parts: dict[str, Any] = field(default_factory=dict)
     in_use: dict[str, dict[int, int]] = field(default_factory=dict)  # uid: {LOD: occurrences}
     predicted: cost_model.Prediction | None = None  # before it was rendered
-    problems: list[Problem] = field(default_factory=list)  # what makes it slow
+    problems: Problems = field(default_factory=Problems)  # the model's, and what makes it slow
 
 
 def cut_and_export(
@@ -206,8 +206,10 @@ def make_picture(
     parts["predicted"] = predicted.part()
     parts["pixel_error"] = settings.pixel_error
     took = ran.parse_cpu_s + ran.trace_cpu_s
-    slow = slow_causes.problems(work, settings.quality, took)
-    return Picture(folder / PICTURE, parts, in_use, predicted, slow)
+    problems = Problems()
+    problems.extend_native(model.problems())
+    problems.extend(slow_causes.problems(work, settings.quality, took))
+    return Picture(folder / PICTURE, parts, in_use, predicted, problems)
 
 
 def make_identities(
