@@ -17,6 +17,29 @@ namespace {
 /// Law: so many corners has no outline.
 constexpr size_t kMostPieces = 4 * MaskOutlines::kMostCorners;
 
+/// The cosine of the angle up to which the normals of leaves differ from their faces':
+/// 15 degrees. POV-Ray turns normals to whoever looks, so that a leaf which is seen flatter than its
+/// normals are bent has the light of its other side: of 45 degrees half of all leaves were black.
+/// Fitted: on two views of a forest (0, 10, 15, 20, 40 degrees) it is nearest to Cycles, which turns
+/// normals by the face; another forest changes by less than a hundredth.
+constexpr float kBentCosine = 0.9659258F;
+/// Law: the sine of that angle.
+constexpr float kBentSine = 0.2588190F;
+
+/// A unit normal, brought nearer to that of a face, on its side, where it differs by more.
+glm::vec3 less_bent(const glm::vec3& normal, const glm::vec3& area) {
+    const float size = glm::length(area);
+    if (!(size > 0))
+        return normal;
+    const glm::vec3 face = (glm::dot(area, normal) < 0 ? -area : area) / size;
+    const float along = glm::dot(face, normal);
+    const glm::vec3 across = normal - along * face;
+    const float wide = glm::length(across);
+    if (!(along < kBentCosine) || !(wide > 0))
+        return normal;
+    return kBentCosine * face + kBentSine / wide * across;
+}
+
 class MeshCutter {
 public:
     MeshCutter(const Model& model, const Representation& representation,
@@ -226,7 +249,8 @@ private:
         if (!mesh_.normals.empty()) {
             const glm::vec3 normal = mean(mesh_.normals, t, w);
             const float length = glm::length(normal);
-            out_.mesh.normals.push_back(length > 0 ? normal / length : mesh_.normals[t.x]);
+            out_.mesh.normals.push_back(less_bent(length > 0 ? normal / length : mesh_.normals[t.x],
+                                                  glm::vec3(area_vector(mesh_, triangle))));
         }
         out_.mesh.uvs.push_back(mean(mesh_.uvs, t, w));
         if (!mesh_.colors.empty())
