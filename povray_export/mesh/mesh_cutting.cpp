@@ -19,7 +19,7 @@ constexpr size_t kMostPieces = 4 * MaskOutlines::kMostCorners;
 
 /// The cosine of the angle up to which the normals of leaves differ from their faces':
 /// 15 degrees. POV-Ray turns normals to whoever looks, so that a leaf which is seen flatter than its
-/// normals are bent has the light of its other side: of 45 degrees half of all leaves were black.
+/// normals are bent has the light of its other side, often none.
 /// Fitted: on two views of a forest (0, 10, 15, 20, 40 degrees) it is nearest to Cycles, which turns
 /// normals by the face; another forest changes by less than a hundredth.
 constexpr float kBentCosine = 0.9659258F;
