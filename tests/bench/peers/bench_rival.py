@@ -131,21 +131,28 @@ def table(found: dict[str, dict]) -> list[str]:
         "| its CPU s | its SSIM | nearer |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    wins = {}
+    words: dict[str, list[str]] = {}
     for name, view in found.items():
         for error, ours in view["ours"].items():
             one, in_time = best(view["rival"], ours["cpu_s"])
-            won = not in_time or ours["ssim"] >= one["ssim"]
-            wins.setdefault(error, []).append(won)
-            word = "ours" if won and in_time else "ours; it takes longer" if won else "the rival"
+            word = "ours" if ours["ssim"] >= one["ssim"] else "the rival"
+            if not in_time:
+                word += ", but it takes longer" if word == "the rival" else "; it takes longer"
+            words.setdefault(error, []).append(word)
             lines.append(
                 f"| {name} | {error} | {ours['cpu_s']:.1f} | {ours['ssim']:.3f} "
                 f"| {one['antialias']}; {one['area_samples']} | {one['cpu_s']:.1f} "
                 f"| {one['ssim']:.3f} | {word} |"
             )
     lines.append("")
-    for error, won in wins.items():
-        lines.append(f"- At {error} px ours is nearer in {sum(won)} of {len(won)} views.")
+    for error, found_words in words.items():
+        lost = found_words.count("the rival")
+        slower = sum(word.endswith("longer") for word in found_words)
+        nearer = found_words.count("the rival, but it takes longer")
+        lines.append(
+            f"- At {error} px, {len(found_words)} views: in {lost} a rival's picture is nearer "
+            f"that takes no longer. In {slower} none is as fast; the fastest is nearer in {nearer}."
+        )
     return lines
 
 
