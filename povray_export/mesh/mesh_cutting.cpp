@@ -2,11 +2,14 @@
 #include "povray_export/mesh/mesh_cutting.h"
 
 #include "povray_export/mesh/cut_plan.h"
+#include "povray_export/mesh/leaf_normals.h"
 #include "povray_export/mesh/triangle_cutter.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -16,29 +19,6 @@ namespace {
 /// The most pieces of a triangle that become one.
 /// Law: so many corners has no outline.
 constexpr size_t kMostPieces = 4 * MaskOutlines::kMostCorners;
-
-/// The cosine of the angle up to which the normals of leaves differ from their faces':
-/// 15 degrees. POV-Ray turns normals to whoever looks, so that a leaf which is seen flatter than its
-/// normals are bent has the light of its other side, often none.
-/// Fitted: on two views of a forest (0, 10, 15, 20, 40 degrees) it is nearest to Cycles, which turns
-/// normals by the face; another forest changes by less than a hundredth.
-constexpr float kBentCosine = 0.9659258F;
-/// Law: the sine of that angle.
-constexpr float kBentSine = 0.2588190F;
-
-/// A unit normal, brought nearer to that of a face, on its side, where it differs by more.
-glm::vec3 less_bent(const glm::vec3& normal, const glm::vec3& area) {
-    const float size = glm::length(area);
-    if (!(size > 0))
-        return normal;
-    const glm::vec3 face = (glm::dot(area, normal) < 0 ? -area : area) / size;
-    const float along = glm::dot(face, normal);
-    const glm::vec3 across = normal - along * face;
-    const float wide = glm::length(across);
-    if (!(along < kBentCosine) || !(wide > 0))
-        return normal;
-    return kBentCosine * face + kBentSine / wide * across;
-}
 
 class MeshCutter {
 public:
@@ -219,20 +199,35 @@ private:
             case CutOutcome::TooMany:
                 return false;
             case CutOutcome::Whole:
-                keep(triangle);
+                keep_leaf(triangle);
                 return true;
             case CutOutcome::Pieces:
-                break;
+                add(triangle, face_of_bent(mesh_, triangle), pieces.corners, pieces.triangles);
+                return true;
         }
+        return true;
+    }
+
+    /// Keeps a triangle that lies in its mask, with corners of its own where its normals are bent.
+    void keep_leaf(uint32_t triangle) {
+        const std::array corners{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)};
+        const std::array whole{glm::uvec3(0, 1, 2)};
+        if (const std::optional<glm::vec3> face = face_of_bent(mesh_, triangle))
+            add(triangle, face, corners, whole);
+        else
+            keep(triangle);
+    }
+
+    void add(uint32_t triangle, const std::optional<glm::vec3>& face,
+             std::span<const glm::dvec3> corners, std::span<const glm::uvec3> pieces) {
         const auto first = static_cast<uint32_t>(out_.mesh.positions.size());
-        for (const glm::dvec3& weights : pieces.corners)
-            add_corner(triangle, weights);
-        for (const glm::uvec3& piece : pieces.triangles) {
+        for (const glm::dvec3& weights : corners)
+            add_corner(triangle, face, weights);
+        for (const glm::uvec3& piece : pieces) {
             out_.mesh.triangles.push_back(piece + first);
             out_.mesh.slots.push_back(mesh_.slot(triangle));
             out_.sources.push_back(triangle);
         }
-        return true;
     }
 
     template <typename Value>
@@ -240,7 +235,9 @@ private:
         return w.x * values[t.x] + w.y * values[t.y] + w.z * values[t.z];
     }
 
-    void add_corner(uint32_t triangle, const glm::dvec3& weights) {
+    /// `face`: that of a triangle whose normals are bent too far.
+    void add_corner(uint32_t triangle, const std::optional<glm::vec3>& face,
+                    const glm::dvec3& weights) {
         const Triangle& t = mesh_.triangles[triangle];
         const glm::vec3 w(weights);
         out_.mesh.positions.emplace_back(weights.x * glm::dvec3(mesh_.positions[t.x]) +
@@ -249,8 +246,8 @@ private:
         if (!mesh_.normals.empty()) {
             const glm::vec3 normal = mean(mesh_.normals, t, w);
             const float length = glm::length(normal);
-            out_.mesh.normals.push_back(less_bent(length > 0 ? normal / length : mesh_.normals[t.x],
-                                                  glm::vec3(area_vector(mesh_, triangle))));
+            const glm::vec3 unit = length > 0 ? normal / length : mesh_.normals[t.x];
+            out_.mesh.normals.push_back(face ? less_bent(unit, *face) : unit);
         }
         out_.mesh.uvs.push_back(mean(mesh_.uvs, t, w));
         if (!mesh_.colors.empty())

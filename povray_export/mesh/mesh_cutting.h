@@ -20,13 +20,15 @@ struct CutMesh {
     std::vector<uint8_t> opaque;    // by slot, 1: what is left has no alpha
 };
 
-/// The mesh of a representation, as far as it is `shown`, with the masks among its materials cut out: those whose alpha is a
-/// mask where the mesh shows it (MaskCount::is_mask()), those that are clipped by a cutoff, and
-/// blends of which a ray meets more than POV-Ray bears. Positions, normals, texture coordinates and
-/// colors of new corners are interpolated; normals differ from the face's by 15 degrees at most, for
-/// POV-Ray lights a leaf that is seen flatter than that from its other side. Where they are no mask, painted clear, or would become
-/// more triangles than pay, slots keep their texture and lose what is clear around it. They stay as
-/// they are where they refract, are mixed, or show what lies beside a picture that ends there.
+/// The mesh of a representation, as far as it is `shown`, with the masks among its materials cut
+/// out: those whose alpha is a mask where the mesh shows it (MaskCount::is_mask()), those that are
+/// clipped by a cutoff, and blends of which a ray meets more than POV-Ray bears. Positions, normals,
+/// texture coordinates and colors of new corners are interpolated. Normals of what is cut that are
+/// bent by their neighbors differ from the face's by 15 degrees at most: POV-Ray lights a leaf that
+/// is seen flatter than that from its other side. Where they are no mask, painted clear, or would
+/// become more triangles than pay, slots keep their texture and lose what is clear around it. They
+/// stay as they are where they refract, are mixed, or show what lies beside a picture that ends
+/// there.
 /// Throws Error(InvalidArgument) for a material out of range, Error(BadFile), Error(Cancelled).
 CutMesh cut_masks(const Model& model, const Representation& representation,
                   const RepresentationOptions& options, MaskOutlines& outlines, const Job& job);

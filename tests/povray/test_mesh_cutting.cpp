@@ -4,9 +4,6 @@
 #include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/mesh/triangle_cutter.h"
 
-#include <glm/trigonometric.hpp>
-
-#include <cmath>
 #include <limits>
 
 using namespace lodestone;
@@ -78,39 +75,6 @@ TEST(MeshCutting, NewCornersAreInterpolated) {
             EXPECT_NEAR(found.mesh.uvs[vertex].x, found.mesh.positions[vertex].x, 1e-6);
         }
     }
-}
-
-TEST(MeshCutting, LeavesSeenFlatWereBlack) {
-    const auto normals_of = [](float degrees, float side) {
-        const float angle = glm::radians(degrees);
-        Mesh mesh = card();
-        mesh.normals.assign(4, glm::vec3(std::sin(angle), 0, side * std::cos(angle)));
-        const size_t before = mesh.positions.size();
-        const CutMesh found = cut(mesh, leaf(disk()));
-        return std::vector<glm::vec3>(
-            found.mesh.normals.begin() + static_cast<std::ptrdiff_t>(before),
-            found.mesh.normals.end());
-    };
-    for (const float side : {1.0F, -1.0F}) {  // of the face that they are on
-        for (const float degrees : {0.0F, 10.0F, 14.0F, 45.0F, 80.0F}) {
-            const float expected = glm::radians(std::min(degrees, 15.0F));
-            const std::vector<glm::vec3> found = normals_of(degrees, side);
-            ASSERT_FALSE(found.empty());
-            for (const glm::vec3& normal : found) {
-                EXPECT_NEAR(normal.x, std::sin(expected), 1e-5);
-                EXPECT_NEAR(normal.y, 0, 1e-5);
-                EXPECT_NEAR(normal.z, side * std::cos(expected), 1e-5);
-            }
-        }
-    }
-}
-
-TEST(MeshCutting, NormalsOfLeavesWithoutAreaOrNumberStayAsTheyAre) {
-    Mesh mesh = card();
-    mesh.normals.assign(4, glm::vec3(std::numeric_limits<float>::quiet_NaN(), 0, 1));
-    mesh.positions[0] = mesh.positions[1];  // of one triangle
-    const CutMesh found = cut(mesh, leaf(disk()));
-    EXPECT_EQ(found.mesh.normals.size(), found.mesh.positions.size());
 }
 
 TEST(MeshCutting, RepeatedMirroredShiftedAndTurnedPicturesHaveTheSameArea) {
