@@ -197,6 +197,9 @@ int run_povray(const CommandArguments& arguments) {
                                        {"left_out_bytes", exported.left_out_bytes},
                                        {"sky_copies", exported.sky_copies},
                                        {"shadow_rays", exported.shadow_rays},
+                                       {"lamp_rays", exported.lamp_rays},
+                                       {"sky_lights", exported.sky_lights},
+                                       {"soft_lamps", exported.soft_lamps},
                                        {"cut_triangles", exported.cut_triangles}}});
     report.push_back({"povray", Fields{{"parse_cpu_s", rendered.parse_cpu_s},
                                        {"trace_cpu_s", rendered.trace_cpu_s},

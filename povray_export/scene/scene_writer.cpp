@@ -430,7 +430,8 @@ private:
         std::string lights;
         if (lit()) {
             report_.lamp_rays = light::mean_lamp_rays(plan, model_.lights);
-            report_.shadow_rays = static_cast<double>(sky_.lights.size()) + report_.lamp_rays +
+            report_.sky_lights = sky_.lights.size();
+            report_.shadow_rays = static_cast<double>(report_.sky_lights) + report_.lamp_rays +
                                   light::mean_sun_rays(plan, model_.lights);
         }
         const SceneLights scene_lights(view_, occluders, bound, times, shading_, light_sampling(),

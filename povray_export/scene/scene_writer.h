@@ -60,6 +60,7 @@ struct ExportReport {
     double lights_each = 0;   // lamps, and lights for several, that light a seen point, in the mean
     double shadow_rays = 0;   // to suns and lamps from a seen point, in the mean, about
     double lamp_rays = 0;     // of these, those to lamps
+    uint64_t sky_lights = 0;  // of these, one each to the lights that stand for the sky's image
     uint64_t soft_lamps = 0;  // lamps, and lights for several, whose shadows are soft anywhere
     uint64_t sky_copies = 0;  // representations more, for copies under other parts of the sky
     uint64_t cut_triangles = 0;  // about what masks that are cut out become

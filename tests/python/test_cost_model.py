@@ -15,7 +15,7 @@ from lodestone_native import Antialias, Camera, CostModel
 WORK = cost_model.Work(
     1_000_000 * CostModel().triangle_bytes, 1_000_000, 640 * 360, 640, 360, 1, 1, 2
 )
-LAMPLESS = {"lamp_rays": 0.0, "soft_lamps": 0}
+LAMPLESS = {"lamp_rays": 0.0, "sky_lights": 0, "soft_lamps": 0}
 CAMERA = Camera("C", False, (0, 0, 2), (0, 1, 0), (1, 0, 0), (0, 0, 0.5), 0.1, aperture=0.2)
 
 

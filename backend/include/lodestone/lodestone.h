@@ -1178,6 +1178,7 @@ typedef struct lds_export_report {
                                of the cut; within its memory budget but for an eighth */
     double shadow_rays;     /* from a point of the picture to suns and lamps, about, on average */
     double lamp_rays;       /* of these, those to lamps */
+    uint64_t sky_lights;    /* of these, one each to the lights that stand for the world's image */
     uint64_t soft_lamps;    /* lamps, and lights that stand for several, with soft shadows */
 } lds_export_report;
 /* Writes scene.pov, scene.ini and r/<16 hex>.inc into folder, with the model's lights and world. */

@@ -169,6 +169,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.sky_copies = report.sky_copies;
         out.shadow_rays = report.shadow_rays;
         out.lamp_rays = report.lamp_rays;
+        out.sky_lights = report.sky_lights;
         out.soft_lamps = report.soft_lamps;
         out.cut_triangles = report.cut_triangles;
         hand_out(out_report, out, "out_report");

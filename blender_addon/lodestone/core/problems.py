@@ -13,6 +13,7 @@ INFO, WARNING, ERROR = "info", "warning", "error"
 SEVERITIES = (INFO, WARNING, ERROR)
 KINDS = ("material", "object", "light", "camera", "world", "collection", "image", "library")
 TEXTS_PER_CODE = 16  # for one thing: a bound for hostile data
+MEASURED = "slow_"  # codes begin so whose texts have measurements: the last one stands for all
 
 Subject = tuple[str, str, str]  # kind, library, name
 CauseKey = tuple[str, str, str]  # severity, code, message without the name
@@ -81,7 +82,10 @@ class Problems:
 
     def _take(self, problem: Problem) -> None:
         same = self._found.setdefault((problem.subject, problem.code), [])
-        if len(same) < TEXTS_PER_CODE and all(p.message != problem.message for p in same):
+        if same and problem.code.startswith(MEASURED):
+            self._order[self._order.index(same[0])] = problem
+            same[0] = problem
+        elif len(same) < TEXTS_PER_CODE and all(p.message != problem.message for p in same):
             same.append(problem)
             self._order.append(problem)
 

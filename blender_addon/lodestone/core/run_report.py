@@ -74,6 +74,7 @@ def export_part(report: native.records.ExportReport) -> dict[str, Any]:
         "sky_copies": report.sky_copies,
         "shadow_rays": report.shadow_rays,
         "lamp_rays": report.lamp_rays,
+        "sky_lights": report.sky_lights,
         "soft_lamps": report.soft_lamps,
         "cut_triangles": report.cut_triangles,
     }

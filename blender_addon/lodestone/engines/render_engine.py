@@ -378,20 +378,8 @@ class _Run:
     # ---- Afterwards ----
 
     def _remember(self, totals, made):
-        cut = made.parts["cut"]
-        addon_session().renders[name_of(self.scene)] = LastRender(
-            totals.triangles_placed,
-            cut["triangles"],
-            cut["kinds"],
-            cut["largest_error_px"],
-            cut["largest_error_name"],
-            made.in_use,
-            self.left,
-            made.predicted.wall_s,
-            made.parts["povray"]["wall_s"],
-            made.predicted.peak_bytes,
-            made.parts["povray"]["peak_bytes"],
-        )
+        render = LastRender.of(made, totals.triangles_placed, self.left)
+        addon_session().renders[name_of(self.scene)] = render
 
     @property
     def _this_frame(self):

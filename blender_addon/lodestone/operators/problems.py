@@ -6,7 +6,6 @@ from bpy.props import StringProperty
 
 from ..bridge import datablock_ids, ignored_problems, quality_settings
 from ..core import problem_causes
-from ..core.picture import slow_causes
 from ..core.session.addon_session import addon_session
 from .polled_operator import InObjectMode, Polled
 
@@ -147,11 +146,25 @@ def text_of(context, key=""):
 
 
 def remedy(context, code):
-    """What makes pictures of the scene faster that have a problem with this code, or None."""
-    return slow_causes.remedy(code, quality_settings.of_scene(context.scene.lodestone))
+    """The control that makes the next picture of the scene faster than the last one, which had a
+    problem with this code; None where there is none, or where it is set already."""
+    render = addon_session().renders.get(context.scene.name)
+    found = render.remedies.get(code) if render else None
+    if found is None:
+        return None
+    now = getattr(quality_settings.of_scene(context.scene.lodestone), found.key)
+    return found if now != found.after else None
 
 
-class LODESTONE_OT_draw_faster(Polled, bpy.types.Operator):
+class _Deciding(Polled):
+    @classmethod
+    def refused(cls, context):
+        if datablock_ids.library_of(context.scene):
+            return "The scene is linked: its decisions are made in its own file"
+        return ""
+
+
+class LODESTONE_OT_draw_faster(_Deciding, bpy.types.Operator):
     bl_idname = "lodestone.draw_faster"
     bl_label = "Faster"
     bl_description = "Change the control that makes the next picture faster"
@@ -164,31 +177,17 @@ class LODESTONE_OT_draw_faster(Polled, bpy.types.Operator):
         faster = remedy(context, properties.code)
         return f"Draw the next picture with {faster.words}" if faster else cls.bl_description
 
-    @classmethod
-    def refused(cls, context):
-        if datablock_ids.library_of(context.scene):
-            return "The scene is linked: its controls are set in its own file"
-        return ""
-
     def execute(self, context):
         faster = remedy(context, self.code)
         if faster is None:
-            self.report({"WARNING"}, "No control makes it faster")
+            self.report({"WARNING"}, "No control makes it faster: render again")
             return {"CANCELLED"}
         quality_settings.override(context.scene.lodestone, faster.key, faster.after)
         self.report({"INFO"}, f"The next picture is drawn with {faster.words}")
         return {"FINISHED"}
 
 
-class _Ignoring(Polled):
-    @classmethod
-    def refused(cls, context):
-        if datablock_ids.library_of(context.scene):
-            return "The scene is linked: its decisions are made in its own file"
-        return ""
-
-
-class LODESTONE_OT_ignore_problem(_OfCause, _Ignoring, bpy.types.Operator):
+class LODESTONE_OT_ignore_problem(_OfCause, _Deciding, bpy.types.Operator):
     bl_idname = "lodestone.ignore_problem"
     bl_label = "Ignore"
     bl_description = "Do not show again until it changes; batch jobs still report it"
@@ -205,7 +204,7 @@ class LODESTONE_OT_ignore_problem(_OfCause, _Ignoring, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class LODESTONE_OT_restore_problems(_Ignoring, bpy.types.Operator):
+class LODESTONE_OT_restore_problems(_Deciding, bpy.types.Operator):
     bl_idname = "lodestone.restore_problems"
     bl_label = "Restore"
     bl_description = "Show the ignored problems again"

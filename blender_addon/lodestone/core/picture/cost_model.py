@@ -86,6 +86,7 @@ class Work:
     depth: int = 3  # samples along the side of a pixel that gets more of them
     exact: bool = False  # everything is drawn as it is, masks too
     lamp_rays: float = 0.0  # those of shadow_rays that go to lamps
+    sky_lights: int = 0  # those to the world's image, one a light
     soft_lamps: int = 0
 
     @property
@@ -123,7 +124,7 @@ class Work:
         return cls(
             *sums, *whole, exported.shadow_rays, antialias, threads, rays, blurred,
             quality.antialias_depth, quality.pixel_error <= 0.0, exported.lamp_rays,
-            exported.soft_lamps,
+            exported.sky_lights, exported.soft_lamps,
         )  # fmt: skip
 
 

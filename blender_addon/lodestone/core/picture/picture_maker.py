@@ -122,8 +122,8 @@ class Picture:
     path: Path
     parts: dict[str, Any] = field(default_factory=dict)
     in_use: dict[str, dict[int, int]] = field(default_factory=dict)  # uid: {LOD: occurrences}
-    predicted: cost_model.Prediction | None = None  # before it was rendered
-    problems: Problems = field(default_factory=Problems)  # the model's, and what makes it slow
+    problems: Problems = field(default_factory=Problems)  # the model's, and what made it slow
+    remedies: dict[str, slow_causes.Remedy] = field(default_factory=dict)  # by code of a problem
 
 
 def cut_and_export(
@@ -136,7 +136,7 @@ def cut_and_export(
 ) -> tuple[dict[str, Any], dict[str, dict[int, int]]]:
     """Writes the scene for one view into folder (made when missing); returns the report's parts
     and how often which level is in use."""
-    parts, in_use, _ = _cut_and_export(model, camera, size, settings, folder, job)
+    parts, in_use, *_ = _cut_and_export(model, camera, size, settings, folder, job)
     return parts, in_use
 
 
@@ -147,7 +147,7 @@ def _cut_and_export(
     settings: Settings,
     folder: Path,
     job: native.Job,
-) -> tuple[dict[str, Any], dict[str, dict[int, int]], cost_model.Work]:
+) -> tuple[dict[str, Any], dict[str, dict[int, int]], cost_model.Work, quality_tree.Quality]:
     folder.mkdir(parents=True, exist_ok=True)
     with settings.cut(model, camera, size, job) as cut:
         view, summary = cut.view, cut.summary()
@@ -164,7 +164,7 @@ def _cut_and_export(
     quality = shaded.quality
     antialias = native.Antialias[quality.antialias]
     work = cost_model.Work.of(summary, view, exported, antialias, settings.threads, quality)
-    return parts, in_use, work
+    return parts, in_use, work, quality
 
 
 def levels_in_use(model: native.Model, cut: native.Cut) -> dict[str, dict[int, int]]:
@@ -191,7 +191,8 @@ def make_picture(
     each long call and gives its Job. Raises LodestoneError; then no new picture is there.
     `costs`: what it takes is predicted from, and remembered with, the last picture of a store.
     `live`: what is drawn into meanwhile. `chosen` is told how many triangles are drawn."""
-    parts, in_use, work = _cut_and_export(model, camera, size, settings, folder, new_job("Export"))
+    exported = _cut_and_export(model, camera, size, settings, folder, new_job("Export"))
+    parts, in_use, work, quality = exported
     ratios = cost_model.Ratios() if costs is None else costs.read()
     predicted = cost_model.predict(work, ratios)
     chosen(parts["cut"]["triangles"])
@@ -200,16 +201,20 @@ def make_picture(
         ran = native.povray_run(*wanted, job)
     else:
         ran = native.povray_run_live(*wanted, live, job)
-    if costs is not None and not (settings.false_color or settings.covered_only):
-        costs.write(cost_model.learn(work, ran, ratios))
+    problems = Problems()
+    problems.extend_native(model.problems())
+    made = Picture(folder / PICTURE, parts, in_use, problems)
+    if not (settings.false_color or settings.covered_only):
+        if costs is not None:
+            costs.write(cost_model.learn(work, ran, ratios))
+        for cause in slow_causes.found(work, quality, ran.parse_cpu_s + ran.trace_cpu_s):
+            problems.extend([cause.problem])
+            if cause.remedy is not None:
+                made.remedies[cause.problem.code] = cause.remedy
     parts["povray"] = run_report.povray_part(ran)
     parts["predicted"] = predicted.part()
     parts["pixel_error"] = settings.pixel_error
-    took = ran.parse_cpu_s + ran.trace_cpu_s
-    problems = Problems()
-    problems.extend_native(model.problems())
-    problems.extend(slow_causes.problems(work, settings.quality, took))
-    return Picture(folder / PICTURE, parts, in_use, predicted, problems)
+    return made
 
 
 def make_identities(

@@ -3,6 +3,9 @@
 
 from dataclasses import dataclass, field
 
+from ..picture.picture_maker import Picture
+from ..picture.slow_causes import Remedy
+
 
 @dataclass(frozen=True)
 class LastRender:
@@ -19,3 +22,23 @@ class LastRender:
     actual_s: float = 0.0
     predicted_bytes: int = 0  # its memory, likewise
     actual_bytes: int = 0
+    remedies: dict[str, Remedy] = field(default_factory=dict)  # of slow causes, by problem's code
+
+    @classmethod
+    def of(cls, made: Picture, triangles_placed: int, without_levels: int) -> "LastRender":
+        """The numbers of a picture that was predicted and drawn."""
+        cut, ran, predicted = made.parts["cut"], made.parts["povray"], made.parts["predicted"]
+        return cls(
+            triangles_placed,
+            cut["triangles"],
+            cut["kinds"],
+            cut["largest_error_px"],
+            cut["largest_error_name"],
+            made.in_use,
+            without_levels,
+            predicted["wall_s"],
+            ran["wall_s"],
+            predicted["peak_bytes"],
+            ran["peak_bytes"],
+            made.remedies,
+        )
