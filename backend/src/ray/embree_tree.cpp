@@ -10,6 +10,7 @@
 #include <new>
 #include <span>
 #include <thread>
+#include <vector>
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -64,15 +65,26 @@ struct TieContext {
     unsigned triangle;
     std::span<uint32_t> list;  // empty: the first hit is wanted
     size_t listed;
+    std::vector<RayCrossing>* crossings;  // null: no crossings are wanted
+    const EndsRay* ends;
 };
 
 /// Keeps the lowest triangle among hits at one distance: else the answer would depend on the order
 /// of leaves, and with it on the number of threads that built the tree.
-void keep_lowest(const RTCFilterFunctionNArguments* arguments) {
+void keep_lowest_of(const RTCFilterFunctionNArguments* arguments, double alpha) {
     auto* best =
         reinterpret_cast<TieContext*>(const_cast<RTCIntersectContext*>(arguments->context));
     const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
     const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
+    if (best->crossings != nullptr) {
+        const bool ends = (*best->ends)(hit->primID, alpha);
+        best->crossings->push_back({hit->primID, static_cast<double>(hit->u),
+                                    static_cast<double>(hit->v), static_cast<double>(ray->tfar),
+                                    ends});
+        if (!ends)
+            arguments->valid[0] = 0;
+        return;
+    }
     if (!best->list.empty()) {
         if (best->listed < best->list.size())
             best->list[best->listed++] = hit->primID;
@@ -87,21 +99,30 @@ void keep_lowest(const RTCFilterFunctionNArguments* arguments) {
     best->triangle = hit->primID;
 }
 
-bool ends_ray(const RTCFilterFunctionNArguments* arguments) {
+void keep_lowest(const RTCFilterFunctionNArguments* arguments) {
+    keep_lowest_of(arguments, 1);
+}
+
+/// The alpha of a hit where it stops its ray; else 0.
+double stopping_alpha(const RTCFilterFunctionNArguments* arguments) {
     const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
-    return static_cast<const MeshCover*>(arguments->geometryUserPtr)
-        ->ends_ray(hit->primID, static_cast<double>(hit->u), static_cast<double>(hit->v));
+    const auto u = static_cast<double>(hit->u);
+    const auto v = static_cast<double>(hit->v);
+    const double alpha =
+        static_cast<const MeshCover*>(arguments->geometryUserPtr)->alpha(hit->primID, u, v);
+    return MeshCover::ends_ray(alpha, hit->primID, u, v) ? alpha : 0;
 }
 
 void keep_lowest_that_stops(const RTCFilterFunctionNArguments* arguments) {
-    if (ends_ray(arguments))
-        keep_lowest(arguments);
+    const double alpha = stopping_alpha(arguments);
+    if (alpha > 0)
+        keep_lowest_of(arguments, alpha);
     else
         arguments->valid[0] = 0;
 }
 
 void keep_what_stops(const RTCFilterFunctionNArguments* arguments) {
-    if (!ends_ray(arguments))
+    if (!(stopping_alpha(arguments) > 0))
         arguments->valid[0] = 0;
 }
 
@@ -355,6 +376,15 @@ size_t EmbreeTree::list_crossed(const glm::dvec3& origin, const glm::dvec3& dire
     context.list = list;
     trace(found(), static_cast<RTCScene>(scene_), origin, direction, far, context);
     return context.listed;
+}
+
+void EmbreeTree::list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                                const EndsRay& ends, std::vector<RayCrossing>& out) const {
+    const FlushDenormals flush;
+    TieContext context{};
+    context.crossings = &out;
+    context.ends = &ends;
+    trace(found(), static_cast<RTCScene>(scene_), origin, direction, far, context);
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include "ray/mesh_scene.h"
 
 #include <string>
+#include <vector>
 
 namespace lodestone::ray {
 
@@ -42,6 +43,9 @@ public:
     /// Lists crossed triangles like MeshScene::list_crossed().
     size_t list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                         std::span<uint32_t> list) const;
+    /// Lists crossings like MeshScene::list_crossings(), with `t` in the tree's own frame.
+    void list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                        const EndsRay& ends, std::vector<RayCrossing>& out) const;
 
 private:
     void* scene_;

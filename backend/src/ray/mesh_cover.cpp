@@ -34,14 +34,20 @@ MeshCover::MeshCover(const Mesh& mesh, SkinPtr skin) : skin_(std::move(skin)) {
     mesh_.slots = mesh.slots;
 }
 
+double MeshCover::alpha(uint32_t triangle, double u, double v) const {
+    return skin_->alpha(mesh_, triangle, u, v);
+}
+
 bool MeshCover::ends_ray(uint32_t triangle, double u, double v) const {
-    const double alpha = skin_->alpha(mesh_, triangle, u, v);
+    return ends_ray(alpha(triangle, u, v), triangle, u, v);
+}
+
+bool MeshCover::ends_ray(double alpha, uint32_t triangle, double u, double v) {
     return alpha >= 1 || (alpha > 0 && alpha > chance(triangle, u, v));
 }
 
 bool MeshCover::shows(uint32_t triangle, double u, double v) const {
-    return skin_->alpha(mesh_, triangle, u + kInside * (1.0 / 3 - u),
-                        v + kInside * (1.0 / 3 - v)) >= kLeastShown;
+    return alpha(triangle, u + kInside * (1.0 / 3 - u), v + kInside * (1.0 / 3 - v)) >= kLeastShown;
 }
 
 std::optional<double> MeshCover::uniform_alpha(uint32_t triangle) const {

@@ -15,6 +15,9 @@ public:
 
     /// These three answer for the MeshScene's functions of the same names.
     bool ends_ray(uint32_t triangle, double u, double v) const;
+    /// The same where the point's alpha() is known.
+    static bool ends_ray(double alpha, uint32_t triangle, double u, double v);
+    double alpha(uint32_t triangle, double u, double v) const;
     bool shows(uint32_t triangle, double u, double v) const;
     std::optional<double> uniform_alpha(uint32_t triangle) const;
 

@@ -211,6 +211,22 @@ size_t MeshScene::list_crossed(const glm::dvec3& origin, const glm::dvec3& direc
     return data.tree->list_crossed(part.origin, part.direction, part.far, list);
 }
 
+void MeshScene::list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                               const EndsRay& ends, std::vector<RayCrossing>& out) const {
+    const Data& data = *data_;
+    Data::RaySegment part;
+    if (!data.clip(origin, direction, far, part))
+        return;
+    const size_t first = out.size();
+    data.tree->list_crossings(part.origin, part.direction, part.far, ends, out);
+    for (size_t i = first; i < out.size(); ++i) {
+        RayCrossing& one = out[i];
+        one.u = std::clamp(one.u, 0.0, 1.0);
+        one.v = std::clamp(one.v, 0.0, 1.0 - one.u);
+        one.t = (part.skipped + one.t) / part.unit;
+    }
+}
+
 ClosestPoint MeshScene::closest_point(const glm::dvec3& point, double radius, uint32_t perhaps,
                                       double enough) const {
     const Data& data = *data_;

@@ -6,11 +6,13 @@
 #include "ray/mesh_skin.h"
 #include "ray/recent_blockers.h"
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace lodestone::ray {
 
@@ -44,6 +46,17 @@ struct RayHit {
     double t = std::numeric_limits<double>::infinity();  // point = origin + t direction
     glm::dvec3 point{0.0};                               // on the triangle, in the mesh's frame
 };
+
+/// A place where a ray meets something that is there, and may go on behind it.
+struct RayCrossing {
+    uint32_t triangle = kNoTriangle;
+    double u = 0;
+    double v = 0;
+    double t = 0;       // point = origin + t direction
+    bool ends = false;  // no ray goes on
+};
+/// Tells by a triangle and its alpha at a point whether rays that are stopped there end there.
+using EndsRay = std::function<bool(uint32_t triangle, double alpha)>;
 
 /// The point of the mesh nearest to another one; with no point in reach the distance is infinite.
 struct ClosestPoint {
@@ -111,6 +124,12 @@ public:
     /// order, as many as `list` has room for. Returns how many were listed.
     size_t list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                         std::span<uint32_t> list) const;
+
+    /// Adds to `out` the places with 0 <= t <= far where first_hit() might stop, in no order, at
+    /// least up to the nearest of those where `ends` says so: in one search what a call of
+    /// first_hit() for each would find.
+    void list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                        const EndsRay& ends, std::vector<RayCrossing>& out) const;
 
     /// The nearest point of any triangle within `radius` metres. A small radius is faster; so is
     /// `perhaps`, a triangle that may be near, which changes nothing else. With `enough`, some

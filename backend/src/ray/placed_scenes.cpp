@@ -210,6 +210,16 @@ PlacedScenes::PlacedHit PlacedScenes::first_hit(const glm::dvec3& origin,
     return best;
 }
 
+void PlacedScenes::visit(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+                         const VisitPlaced& visit) const {
+    far = std::min(far, kFarthest);
+    walk(origin, direction, far, [&](const PlacedScene& placed) {
+        far = std::min(far, visit(*placed.scene, placed.name, placed.inverse(origin),
+                                  placed.inverse.linear * direction, far));
+        return false;
+    });
+}
+
 bool PlacedScenes::occluded(const glm::dvec3& origin, const glm::dvec3& direction,
                             double far) const {
     uint32_t blocker = kNothing;

@@ -9,6 +9,7 @@
 #include "base/maths.h"
 #include "ray/mesh_scene.h"
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -36,6 +37,13 @@ public:
     /// The nearest hit with 0 <= t <= far; the placement added first wins among equally near ones.
     PlacedHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                         double far = std::numeric_limits<double>::infinity()) const;
+    /// Visits the placements whose boxes a ray meets within `far`, near ones before far ones, with
+    /// the ray in the frame of each. The visit returns how far the ray goes on.
+    using VisitPlaced =
+        std::function<double(const MeshScene& scene, uint32_t name, const glm::dvec3& origin,
+                             const glm::dvec3& direction, double far)>;
+    void visit(const glm::dvec3& origin, const glm::dvec3& direction, double far,
+               const VisitPlaced& visit) const;
     /// Whether anything blocks the ray within `far`.
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
     /// Whether anything blocks the ray; faster where `blocker` is the placement that blocked a ray

@@ -6,6 +6,8 @@
 #include "light/seen/distinct_shapes.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <tuple>
 #include <utility>
 
 namespace lodestone::light {
@@ -13,7 +15,7 @@ namespace {
 
 // The surfaces that a ray meets at most.
 // Taste: a larger value finds things behind more leaves of a crown, which hide them.
-constexpr int kMostSteps = 64;
+constexpr ptrdiff_t kMostCrossings = 64;
 // The alpha from which on nothing is seen through a point.
 // Law: half a step of 8 bits.
 constexpr double kEnds = 1 - 0.5 / 255;
@@ -26,8 +28,8 @@ Material covering_material(Material material) {
     return material;
 }
 
-bool transmits(const Material& material) {
-    return material.transmission > 0 || (material.other && transmits(*material.other));
+bool transmits_any(const Material& material) {
+    return material.transmission > 0 || (material.other && transmits_any(*material.other));
 }
 
 /// Whether a material sends rays on in directions that its normals alone do not tell.
@@ -67,7 +69,7 @@ SightScene::SightScene(const Model& model, const RendererSurfaces& renderer,
     for (size_t i = 0; i < model.materials.size(); ++i) {
         const Material& material = model.materials[i];
         bends_.push_back(bends_rays(material, renderer.reflections[i].may_mirror) ? 1 : 0);
-        transmits_.push_back(transmits(material) ? 1 : 0);
+        transmits_.push_back(transmits_any(material) ? 1 : 0);
     }
     DistinctShapes distinct = distinct_shapes(drawn);
     shape_of_ = std::move(distinct.of_thing);
@@ -91,43 +93,62 @@ SightScene::SightScene(const Model& model, const RendererSurfaces& renderer,
     least_ = 1e-6 * glm::length(seen_.box().size());
 }
 
-bool SightScene::step(SightWalk& walk, SightCrossing& out) const {
+void SightScene::cross(const SightWalk& walk, std::vector<SightCrossing>& out) const {
+    out.clear();
+    std::vector<ray::RayCrossing> met;
+    double end = walk.far;
     const ray::PlacedScenes& scene = walk.sees == kShadowRays ? shading_ : seen_;
-    while (walk.steps < kMostSteps && walk.far > 0) {
-        const ray::PlacedScenes::PlacedHit hit =
-            scene.first_hit(walk.origin, walk.direction, walk.far);
-        if (!hit.hit)
-            return false;
-        ++walk.steps;
-        const DrawnThing& thing = drawn_[hit.name];
-        const SightShape& shape = shapes_[shape_of_[hit.name]];
-        const bool again = hit.name == walk.last_drawn && hit.triangle == walk.last_triangle;
-        walk.last_drawn = hit.name;
-        walk.last_triangle = hit.triangle;
-        const double onward = hit.t + (again ? 1 : kBehind) * aside(walk.way + hit.t);
-        out.point = walk.origin + hit.t * walk.direction;
-        out.way = walk.way + hit.t;
-        walk.origin += onward * walk.direction;
-        walk.way += onward;
-        walk.far -= onward;
-        if (again || (thing.hidden & walk.sees) != 0)
-            continue;
-        out.drawn = hit.name;
-        out.triangle = hit.triangle;
-        out.u = hit.u;
-        out.v = hit.v;
-        out.ends =
-            !shape.skin || shape.skin->alpha(*shape.mesh, hit.triangle, hit.u, hit.v) >= kEnds;
-        const uint16_t slot = shape.mesh->slot(hit.triangle);
-        const std::vector<uint32_t>& materials = thing.representation->materials;
-        const size_t material = slot < materials.size() ? materials[slot] : bends_.size();
-        const bool known = material < bends_.size();
-        out.mirrors = known && renderer_.reflections[material].may_mirror;
-        out.ends = out.ends && !(known && transmits_[material] != 0);
-        out.bends = known && bends_[material] != 0;
-        return true;
+    scene.visit(walk.origin, walk.direction, walk.far,
+                [&](const ray::MeshScene& mesh, uint32_t drawn, const glm::dvec3& origin,
+                    const glm::dvec3& direction, double far) {
+                    if ((drawn_[drawn].hidden & walk.sees) != 0)
+                        return far;
+                    met.clear();
+                    mesh.list_crossings(
+                        origin, direction, far,
+                        [&](uint32_t triangle, double alpha) {
+                            return alpha >= kEnds && !transmits(drawn, triangle);
+                        },
+                        met);
+                    for (const ray::RayCrossing& one : met) {
+                        SightCrossing at;
+                        at.drawn = drawn;
+                        at.triangle = one.triangle;
+                        at.u = one.u;
+                        at.v = one.v;
+                        at.way = one.t;
+                        at.ends = one.ends;
+                        out.push_back(at);
+                        end = one.ends ? std::min(end, one.t) : end;
+                    }
+                    return end;
+                });
+    std::erase_if(out, [&](const SightCrossing& at) { return at.way > end; });
+    std::sort(out.begin(), out.end(), [](const SightCrossing& a, const SightCrossing& b) {
+        return std::tie(a.way, a.drawn, a.triangle) < std::tie(b.way, b.drawn, b.triangle);
+    });
+    const auto last =
+        std::find_if(out.begin(), out.end(), [](const SightCrossing& at) { return at.ends; });
+    const auto count = std::min<ptrdiff_t>(last - out.begin() + 1, kMostCrossings);
+    out.resize(std::min(out.size(), static_cast<size_t>(count)));
+    for (SightCrossing& at : out) {
+        at.point = walk.origin + at.way * walk.direction;
+        at.way += walk.way;
+        const size_t material = material_of(at.drawn, at.triangle);
+        at.mirrors = material < bends_.size() && renderer_.reflections[material].may_mirror;
+        at.bends = material < bends_.size() && bends_[material] != 0;
     }
-    return false;
+}
+
+size_t SightScene::material_of(uint32_t drawn, uint32_t triangle) const {
+    const uint16_t slot = mesh(drawn).slot(triangle);
+    const std::vector<uint32_t>& materials = drawn_[drawn].representation->materials;
+    return slot < materials.size() ? materials[slot] : bends_.size();
+}
+
+bool SightScene::transmits(uint32_t drawn, uint32_t triangle) const {
+    const size_t material = material_of(drawn, triangle);
+    return material < transmits_.size() && transmits_[material] != 0;
 }
 
 }  // namespace lodestone::light

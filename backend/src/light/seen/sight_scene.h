@@ -12,17 +12,13 @@
 
 namespace lodestone::light {
 
-/// A ray on its way through a sight scene.
+/// A straight part of a ray's way through a sight scene.
 struct SightWalk {
     glm::dvec3 origin{0.0};          // world
     glm::dvec3 direction{0, 0, -1};  // has length 1
-    double far = kInfinity;          // metres that are left of the way
+    double far = kInfinity;          // metres
     RayMask sees = kCameraRays;      // the class of the ray
-    double way = 0;                  // metres from its beginning to `origin`
-    int steps = 0;                   // the surfaces that it has met, clear ones too
-    /// The triangle that it met last, which it may meet again where it goes on.
-    uint32_t last_drawn = ray::kNoTriangle;
-    uint32_t last_triangle = ray::kNoTriangle;
+    double way = 0;                  // metres from the ray's beginning to `origin`
 };
 
 /// A place where a ray meets something that is there.
@@ -32,7 +28,7 @@ struct SightCrossing {
     double u = 0;
     double v = 0;
     glm::dvec3 point{0.0};
-    double way = 0;        // metres from the beginning of the walk
+    double way = 0;        // metres from the ray's beginning
     bool ends = true;      // no ray goes on straight ahead, as one of a shadow does in glass
     bool mirrors = false;  // some rays may go on mirrored
     bool bends = false;    // rays go on in directions that only the renderer knows
@@ -47,10 +43,10 @@ public:
     SightScene(const Model& model, const RendererSurfaces& renderer,
                std::span<const DrawnThing> drawn, const Job& job);
 
-    /// Moves a walk to the next thing that is there for it: masks and clear things let as many rays
-    /// pass as they hide nothing of, and after the others it goes on behind them. False: there is none, or the ray has
-    /// met so many surfaces that what is behind does not show.
-    bool step(SightWalk& walk, SightCrossing& out) const;
+    /// Finds what a walk meets, near things first, up to the first that ends it; masks and clear
+    /// things let as many rays pass as they hide nothing of. Behind very many surfaces nothing
+    /// shows, and nothing is found. `out` is emptied first.
+    void cross(const SightWalk& walk, std::vector<SightCrossing>& out) const;
 
     /// The triangles of a drawn thing.
     const Mesh& mesh(uint32_t drawn) const { return *shapes_[shape_of_[drawn]].mesh; }
@@ -64,9 +60,6 @@ public:
     /// The share of a way by which a ray begins above what it leaves.
     /// Law: positions are known to 1e-7 of it; this is a large margin.
     static constexpr double kRelative = 1e-5;
-    /// The same behind what it went through: layers lie close to each other.
-    /// Law: a tenth, just above what positions are known to.
-    static constexpr double kBehind = 0.1;
 
 private:
     struct SightShape {
@@ -75,6 +68,9 @@ private:
         ray::SkinPtr skin;  // null: all of it is opaque
     };
     SightShape shape_of(const DrawnThing& thing);
+    /// The material of a triangle; beyond all materials: it has none.
+    size_t material_of(uint32_t drawn, uint32_t triangle) const;
+    bool transmits(uint32_t drawn, uint32_t triangle) const;
 
     const Model& model_;
     const RendererSurfaces& renderer_;
