@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/scene/include_files.h"
 
-#include "base/clock.h"
 #include "base/error.h"
 #include "base/files.h"
 #include "base/parallel.h"
@@ -263,7 +262,6 @@ void IncludeFiles::write(const Job& job) {
     std::atomic<size_t> done{0};
     parallel_for(files_.size(), [&](size_t i) {
         job.check();
-        const double start = thread_cpu_seconds();
         IncludeFile& include = files_[i];
         if (include.same)
             return;
@@ -291,7 +289,6 @@ void IncludeFiles::write(const Job& job) {
             include.clear_layers =
                 std::strtod(text.c_str() + layers + std::strlen(kClearLayers), nullptr);
         include.bumps_left_out = text.find(kBumpsLeftOut) != std::string::npos;
-        include.cpu_s = thread_cpu_seconds() - start;
         job.progress(static_cast<double>(++done) / static_cast<double>(files_.size() + 1));
     });
     outlines_.findings().save();
@@ -313,7 +310,6 @@ void IncludeFiles::add_to(ExportReport& report) const {
     for (const IncludeFile& include : files_) {
         if (include.same)
             continue;
-        report.cpu_s += include.cpu_s;
         if (!include.drawn)
             continue;
         report.bytes += include.bytes;

@@ -26,7 +26,6 @@ struct IncludeFile {
     double texel = std::numeric_limits<double>::infinity();  // at its nearest use
     NeededTriangles needed = {};                             // by all its uses
     uint64_t bytes = 0;
-    double cpu_s = 0;
     bool written = false;
     bool drawn = false;
     bool bumps_left_out = false;

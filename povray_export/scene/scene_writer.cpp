@@ -65,7 +65,7 @@ public:
     }
 
     ExportReport write() {
-        const double start = thread_cpu_seconds();
+        const double start = cpu_seconds();
         job_.stage(JobStage::Export);
         check_view(view_);
         if (!options_.colors.empty() && options_.colors.size() != cut_.chosen.size())
@@ -77,10 +77,8 @@ public:
         find_needs();
         find_sky_light();
         collect();
-        const double before_files = thread_cpu_seconds();
         includes_.write(job_.part(sky_light_ && sky_light_->baked() ? kBakePart : 0, 1));
         hide_replaced();
-        const double after_files = thread_cpu_seconds();
         name_problems();
         if (!sky_.file.empty()) {
             report_.bytes += sky_.bytes;
@@ -92,7 +90,7 @@ public:
                                                 options_.antialiasing, transparent()));
         ExportReport report = report_;
         includes_.add_to(report);
-        report.cpu_s += before_files - start + thread_cpu_seconds() - after_files;
+        report.cpu_s = cpu_seconds() - start;
         job_.progress(1);
         return report;
     }
@@ -124,12 +122,8 @@ private:
             return;
         std::vector<Light> lights = sky_.lights;
         lights.insert(lights.end(), model_.lights.begin(), model_.lights.end());
-        const double thread_start = thread_cpu_seconds();
-        const double process_start = cpu_seconds();
         needs_.find(model_, renderer_, cut_, view_, lights, job_);
         report_.left_out_bytes = needs_.bytes_left_out();
-        // Other threads helped; this one is counted with all it does.
-        report_.cpu_s += cpu_seconds() - process_start - (thread_cpu_seconds() - thread_start);
     }
 
     /// Gathered light shadows the sky by itself; POV-Ray ignores ambient then.
@@ -146,11 +140,7 @@ private:
         wanted.needs = &needs_;
         wanted.pixels = static_cast<double>(view_.width) * view_.height;
         wanted.texels = renderer_.texels;
-        const double thread_start = thread_cpu_seconds();
-        const double process_start = cpu_seconds();
         sky_light_.emplace(model_, cut_, wanted, problems_, job_.part(0, kBakePart));
-        // Other threads helped; this one is counted with all it does.
-        report_.cpu_s += cpu_seconds() - process_start - (thread_cpu_seconds() - thread_start);
     }
 
     void collect_own() {

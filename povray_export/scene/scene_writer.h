@@ -64,7 +64,7 @@ struct ExportReport {
     uint64_t soft_lamps = 0;  // lamps, and lights for several, whose shadows are soft anywhere
     uint64_t sky_copies = 0;  // representations more, for copies under other parts of the sky
     uint64_t cut_triangles = 0;  // about what masks that are cut out become
-    double cpu_s = 0;            // sum over all threads
+    double cpu_s = 0;            // of the whole process while it was written
 };
 
 /// Writes scene.pov, scene.ini, r/<16 hex>.inc, one for every distinct representation, and the

@@ -36,23 +36,31 @@ double in_spread(const Light& area, double cosine) {
     return norm * std::sin(s - x) / (std::sin(s) * std::max(1e-9, std::cos(x)));
 }
 
+/// The parts of a lamp's light that arrive at a surface, and at one that faces the lamp's middle.
+struct ArrivingShares {
+    double surface = 0;
+    double head_on = 0;
+};
+
 /// The light of an area of 1 watt, in as many parts as it is near: from its middle alone, what is
 /// beside a window's frame would get nothing of the window.
-double from_area(const Light& area, const glm::dvec3& point, const glm::dvec3& normal) {
+ArrivingShares from_area(const Light& area, const glm::dvec3& point, const glm::dvec3& normal) {
     // The parts along an edge, for each extent over the distance.
     // Taste: more are nearer to all of the area, more slowly.
     constexpr double kPartsNear = 6;
     // The most parts along an edge.
     // Taste: these tell whether a lamp matters, and need not be exact.
     constexpr double kMostParts = 8;
-    const double away = glm::length(area.position - point);
+    const glm::dvec3 middle = area.position - point;
+    const double away = glm::length(middle);
+    const glm::dvec3 to_middle = middle / std::max(away, 1e-300);
     const auto parts = static_cast<int>(std::clamp(
         std::floor(kPartsNear * extent_of(area) / std::max(away, 1e-9)), 1.0, kMostParts));
     const double size =
         glm::length(glm::cross(area.edge_u, area.edge_v)) * (area.round ? kPi / 4 : 1);
     const double part_size = size / (parts * parts);
     const glm::dvec3 out = glm::normalize(area.direction);
-    double sum = 0;
+    ArrivingShares sum;
     int count = 0;
     for (int i = 0; i < parts * parts; ++i) {
         const double u = (i % parts + 0.5) / parts - 0.5;
@@ -66,11 +74,34 @@ double from_area(const Light& area, const glm::dvec3& point, const glm::dvec3& n
         const double distance = std::sqrt(square);
         const double facing = glm::dot(way, normal);
         const double sent = -glm::dot(way, out) / std::max(distance, 1e-300);
-        if (facing > 0 && sent > 0)
-            sum += facing / distance * sent * in_spread(area, sent) /
-                   (4 * kPi * (square + part_size / kPi));
+        if (!(sent > 0))
+            continue;
+        const double part =
+            sent * in_spread(area, sent) / (4 * kPi * (square + part_size / kPi) * distance);
+        sum.surface += std::max(0.0, facing) * part;
+        sum.head_on += std::max(0.0, glm::dot(way, to_middle)) * part;
     }
-    return sum / std::max(count, 1);
+    const int divisor = std::max(count, 1);
+    return {sum.surface / divisor, sum.head_on / divisor};
+}
+
+/// The light of a point or a spot of 1 watt.
+ArrivingShares from_middle(const Light& light, const glm::dvec3& point, const glm::dvec3& normal) {
+    const glm::dvec3 way = light.position - point;
+    const double square = glm::dot(way, way);
+    const double distance = std::sqrt(square);
+    const double facing = glm::dot(way, normal);
+    if (!(facing > 0))
+        return {};
+    const double r = light.radius;
+    double head_on = 1 / (4 * kPi * kPi * (square + r * r + 1e-9));
+    if (light.kind == LightKind::Spot) {
+        const double sent = -glm::dot(way, glm::normalize(light.direction)) / distance;
+        if (!(sent > 0))
+            return {};
+        head_on *= sent * in_cone(light, sent);
+    }
+    return {facing / distance * head_on, head_on};
 }
 
 }  // namespace
@@ -106,25 +137,11 @@ bool is_lamp(const Light& light) {
     return light.kind == LightKind::Spot || glm::length(glm::cross(light.edge_u, light.edge_v)) > 0;
 }
 
-glm::dvec3 arriving_radiance(const Light& light, const glm::dvec3& point,
-                             const glm::dvec3& normal) {
-    if (light.kind == LightKind::Area)
-        return energy_of(light) * from_area(light, point, normal);
-    const glm::dvec3 way = light.position - point;
-    const double square = glm::dot(way, way);
-    const double distance = std::sqrt(square);
-    const double facing = glm::dot(way, normal);
-    if (!(facing > 0))
-        return glm::dvec3(0.0);
-    const double cosine = facing / distance;
-    const double r = light.radius;
-    if (light.kind == LightKind::Point)
-        return energy_of(light) * (cosine / (4 * kPi * kPi * (square + r * r + 1e-9)));
-    const double sent = -glm::dot(way, glm::normalize(light.direction)) / distance;
-    if (!(sent > 0))
-        return glm::dvec3(0.0);
-    return energy_of(light) *
-           (cosine * sent * in_cone(light, sent) / (4 * kPi * kPi * (square + r * r + 1e-9)));
+LightArrival light_arrival(const Light& light, const glm::dvec3& point, const glm::dvec3& normal) {
+    const ArrivingShares shares = light.kind == LightKind::Area ? from_area(light, point, normal)
+                                                                : from_middle(light, point, normal);
+    const glm::dvec3 energy = energy_of(light);
+    return {energy * shares.surface, energy * shares.head_on};
 }
 
 double display_step(double radiance) {
@@ -136,7 +153,7 @@ double display_step(double radiance) {
     return kStep * kSrgbPower / kSrgbScale * std::pow(shown, 1 - 1 / kSrgbPower);
 }
 
-glm::dvec3 light_tolerance(const glm::dvec3& radiance, double pixel_error) {
+LightTolerance::LightTolerance(const glm::dvec3& radiance) {
     // The share of a point's light that nobody misses.
     // Taste: a quarter of a step at the brightest, and still no step in a picture exposed 4 stops up.
     constexpr double kMissed = 1.0 / 1024;
@@ -144,14 +161,11 @@ glm::dvec3 light_tolerance(const glm::dvec3& radiance, double pixel_error) {
     // Taste: no more than is lost by rounding.
     constexpr double kDarkStep = 0.125;
     const double brightest = std::max({radiance.x, radiance.y, radiance.z, 0.0});
-    glm::dvec3 out(0.0);
     for (int i = 0; i < 3; ++i) {
         const double here = std::max(0.0, radiance[i]);
-        const double step = display_step(here);
-        out[i] = std::max(
-            {kMissed * here, std::min(kMissed * brightest, kDarkStep * step), pixel_error * step});
+        step_[i] = display_step(here);
+        least_[i] = std::max(kMissed * here, std::min(kMissed * brightest, kDarkStep * step_[i]));
     }
-    return out;
 }
 
 }  // namespace lodestone::light

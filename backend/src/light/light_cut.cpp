@@ -141,8 +141,9 @@ private:
                 sum += glm::dvec3(column.possible[k]);
             }
             const glm::dvec3 exact(kExactSum * (sum.x + sum.y + sum.z));
+            const LightTolerance tolerance(radiance);
             const auto allowed = [&](double error) {
-                return glm::max((1 - kUntried) * light_tolerance(radiance, error), exact);
+                return glm::max((1 - kUntried) * tolerance.at(error), exact);
             };
             allowed_.push_back(allowed(pixel_error_));
             most_allowed_.push_back(allowed(kMostOfMean * pixel_error_));
@@ -387,8 +388,11 @@ public:
         };
         std::make_heap(waiting_.begin(), waiting_.end(), weaker);
         glm::dvec3 known = point.other_light;
+        // Brighter points may be off by more: nothing is left out before this much of the rest is.
+        const glm::dvec3 most_left = kUntried * light_tolerance(known + rest, pixel_error_);
         while (!waiting_.empty() &&
-               !within(rest, kUntried * light_tolerance(known, pixel_error_))) {
+               !(within(rest, most_left) &&
+                 within(rest, kUntried * light_tolerance(known, pixel_error_)))) {
             std::pop_heap(waiting_.begin(), waiting_.end(), weaker);
             const WaitingLamp next = waiting_.back();
             waiting_.pop_back();

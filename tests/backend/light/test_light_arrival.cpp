@@ -45,7 +45,7 @@ TEST(LightArrival, FarAwayAPanelCountsAsItsMiddle) {
         for (const glm::dvec3& point : {glm::dvec3(3, 0, 0), glm::dvec3(4, 2, 1)}) {
             const glm::dvec3 normal = glm::normalize(-point);
             const double expected = exact(panel(round), point, normal);
-            EXPECT_NEAR(arriving_radiance(panel(round), point, normal).x, expected,
+            EXPECT_NEAR(light_arrival(panel(round), point, normal).surface.x, expected,
                         0.05 * expected);
         }
     }
@@ -56,13 +56,13 @@ TEST(LightArrival, WhatIsBesideAPanelIsLitByItsNearParts) {
     for (const double depth : {0.05, 0.1, 0.2, 0.4}) {
         const glm::dvec3 point(depth, 0.5, 0);
         const glm::dvec3 normal(0, -1, 0);
-        const double found = arriving_radiance(panel(), point, normal).x;
+        const double found = light_arrival(panel(), point, normal).surface.x;
         const double expected = exact(panel(), point, normal);
         EXPECT_GT(found, 0.5 * expected) << depth;
         EXPECT_LT(found, 2 * expected) << depth;
     }
-    EXPECT_EQ(arriving_radiance(panel(), {-0.1, 0, 0}, {1, 0, 0}).x, 0);
-    EXPECT_GE(arriving_radiance(panel(), {0, 0, 0}, {1, 0, 0}).x, 0);
+    EXPECT_EQ(light_arrival(panel(), {-0.1, 0, 0}, {1, 0, 0}).surface.x, 0);
+    EXPECT_GE(light_arrival(panel(), {0, 0, 0}, {1, 0, 0}).surface.x, 0);
 }
 
 TEST(LightArrival, APointMayBeOffByAThousandthOrByTheStepsOfTheError) {

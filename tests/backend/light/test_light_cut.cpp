@@ -161,10 +161,11 @@ TEST(LightCut, DifferencesAreWithinTheNumber) {
             glm::dvec3 exact(0.0);
             glm::dvec3 drawn(0.0);
             for (const Light& light : lights)
-                exact += point.albedo * arriving_radiance(light, point.position, point.normal);
+                exact += point.albedo * light_arrival(light, point.position, point.normal).surface;
             for (const uint32_t node : nodes)
-                drawn += point.albedo *
-                         arriving_radiance(tree.nodes[node].light, point.position, point.normal);
+                drawn +=
+                    point.albedo *
+                    light_arrival(tree.nodes[node].light, point.position, point.normal).surface;
             const double steps = std::abs(drawn.x - exact.x) / display_step(exact.x);
             EXPECT_LE(steps, 3.01 * error);
             square += steps * steps;

@@ -97,10 +97,10 @@ TEST(LightTree, SeenFromAfarAJoinedLightIsItsLamps) {
         const glm::dvec3 from{0.5, 0.5, -200};
         glm::dvec3 sum(0.0);
         for (const Light& light : lights)
-            sum += arriving_radiance(light, from, {0, 0, 1});
+            sum += light_arrival(light, from, {0, 0, 1}).surface;
         EXPECT_GT(sum.x, 0);
-        expect_near(arriving_radiance(tree.nodes.back().light, from, {0, 0, 1}) / sum.x, {1, 1, 1},
-                    1e-3);
+        expect_near(light_arrival(tree.nodes.back().light, from, {0, 0, 1}).surface / sum.x,
+                    {1, 1, 1}, 1e-3);
     }
 }
 
@@ -208,18 +208,18 @@ TEST(LightTree, TenThousandLampsAreJoinedAlsoWhereAllAreInOnePlace) {
 TEST(LightArrival, KnownAnswers) {
     const double pi = std::numbers::pi;
     const Light lamp = point({0, 0, 2}, 4 * pi * pi);
-    EXPECT_NEAR(arriving_radiance(lamp, {0, 0, 0}, {0, 0, 1}).x, 0.25, 1e-9);
-    EXPECT_EQ(arriving_radiance(lamp, {0, 0, 0}, {0, 0, -1}).x, 0);
+    EXPECT_NEAR(light_arrival(lamp, {0, 0, 0}, {0, 0, 1}).surface.x, 0.25, 1e-9);
+    EXPECT_EQ(light_arrival(lamp, {0, 0, 0}, {0, 0, -1}).surface.x, 0);
     Light spot = lamp;
     spot.kind = LightKind::Spot;
     spot.spot_size = pi / 2;
-    EXPECT_NEAR(arriving_radiance(spot, {0, 0, 0}, {0, 0, 1}).x, 0.25, 1e-9);
-    EXPECT_EQ(arriving_radiance(spot, {2.1, 0, 0}, {0, 0, 1}).x, 0);
+    EXPECT_NEAR(light_arrival(spot, {0, 0, 0}, {0, 0, 1}).surface.x, 0.25, 1e-9);
+    EXPECT_EQ(light_arrival(spot, {2.1, 0, 0}, {0, 0, 1}).surface.x, 0);
     Light area;
     area.kind = LightKind::Area;
     area.position = {0, 0, 100};
     area.power = 4 * pi * 1e4;
-    EXPECT_NEAR(arriving_radiance(area, {0, 0, 0}, {0, 0, 1}).x, 1, 1e-3);
+    EXPECT_NEAR(light_arrival(area, {0, 0, 0}, {0, 0, 1}).surface.x, 1, 1e-3);
     EXPECT_NEAR(display_step(0), 1 / (255 * 12.92), 1e-12);
     EXPECT_NEAR(display_step(5), 2.4 / (255 * 1.055), 1e-12);
 }

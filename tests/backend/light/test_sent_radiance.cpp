@@ -21,7 +21,7 @@ TEST(SentRadiance, AHighlightHasNoCosineAndFadesForALampOverhead) {
         point.to_eye = {-std::sin(angle), 0, std::cos(angle)};
         point.highlight = {0.5, 2, fading};
         lamp.position = {10 * std::sin(angle), 0, 10 * std::cos(angle)};
-        const glm::dvec3 whole = arriving_radiance(lamp, {}, glm::normalize(lamp.position));
+        const glm::dvec3 whole = light_arrival(lamp, {}, glm::normalize(lamp.position)).surface;
         return sent_radiance(lamp, point).x / whole.x;
     };
     const double full = 0.5 * 4 / (4 * (2 - 0.5));

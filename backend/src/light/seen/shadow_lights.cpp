@@ -63,6 +63,12 @@ std::vector<ShadowLight> shadow_lights(std::span<const Light> lights) {
             one.radius = extent_of(light);
             one.strength = power / (4 * kPi);
         }
+        if (!one.sun && light.kind != LightKind::Point) {
+            one.way = glm::normalize(light.direction);
+            // Law: an area shines to half of all sides.
+            const double cone = light.kind == LightKind::Spot ? light.spot_size : kPi;
+            one.cone_cosine = std::cos(std::clamp(cone / 2, 0.0, kPi / 2));
+        }
         if (!std::isfinite(one.strength))
             one.strength = 0;
         const bool placed =
@@ -80,20 +86,19 @@ double arriving(const ShadowLight& light, const glm::dvec3& point, const glm::dv
                (sided ? std::clamp(glm::dot(light.way, normal), std::min(light.radius, 1.0), 1.0)
                       : 1);
     const glm::dvec3 way = light.light->position - point;
-    const double square = glm::dot(way, way) + light.radius * light.radius;
-    double out = light.strength / std::max(square, 1e-9);
+    const double own_square = glm::dot(way, way);
+    const double square = std::max(own_square + light.radius * light.radius, 1e-9);
+    double share = 1;
     if (sided) {
         const double facing = glm::dot(way, normal) + light.radius;
-        out *= std::clamp(facing / std::sqrt(std::max(square, 1e-9)), 0.0, 1.0);
+        if (!(facing > 0))
+            return 0;
+        share = std::min(facing / std::sqrt(square), 1.0);
     }
-    if (light.light->kind == LightKind::Point)
-        return out;
-    // Law: an area shines to half of all sides.
-    const double cone = light.light->kind == LightKind::Spot ? light.light->spot_size : kPi;
-    const double along = -glm::dot(way, light.light->direction);
-    const double least = std::cos(std::clamp(cone / 2, 0.0, kPi / 2)) * glm::length(way) *
-                         glm::length(light.light->direction);
-    return along > least || !(glm::length(way) > 0) ? out : 0;
+    if (light.light->kind != LightKind::Point && own_square > 0 &&
+        !(-glm::dot(way, light.way) > light.cone_cosine * std::sqrt(own_square)))
+        return 0;
+    return share * light.strength / square;
 }
 
 std::span<const uint32_t> LightPicker::pick(const glm::dvec3& point, const glm::dvec3& normal,

@@ -15,16 +15,17 @@ namespace lodestone::light {
 struct ShadowLight {
     const Light* light = nullptr;
     bool sun = true;
-    glm::dvec3 way{0, 0, 1};  // of a sun: to it; has length 1
+    glm::dvec3 way{0, 0, 1};  // of a sun: to it; of a spot or an area: where it shines; unit
     double radius = 0;        // of a sun's disk at distance 1; of a lamp: from its middle, metres
-    double strength = 0;  // of a sun: W/m^2; of a lamp: that at 1 m from it; however it is colored
+    double strength = 0;     // of a sun: W/m^2; of a lamp: that at 1 m from it; of any color
+    double cone_cosine = 0;  // of a spot or an area: it shines where that of its angle is more
 };
 
 /// The lights that throw shadows, those that take light away, too. The lights must outlive them.
 std::vector<ShadowLight> shadow_lights(std::span<const Light> lights);
 
 /// The light that a point gets where nothing hides it, W/m^2, about: a lamp counts as its middle.
-/// `normal`: the side that it turns to lights, of length 1; 0: all sides. Not arriving_radiance(),
+/// `normal`: the side that it turns to lights, of length 1; 0: all sides. Not light_arrival(),
 /// which asks an area for up to 64 parts, and needs a side.
 double arriving(const ShadowLight& light, const glm::dvec3& point, const glm::dvec3& normal);
 
