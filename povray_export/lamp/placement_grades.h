@@ -2,6 +2,8 @@
 // Placement grades: few factors for the many placements of one thing, each of which is a copy of it.
 #pragma once
 
+#include <glm/vec3.hpp>
+
 #include <vector>
 
 namespace lodestone::povray {
@@ -10,7 +12,16 @@ namespace lodestone::povray {
 /// Taste: a larger value shades copies more truly, for a copy of the mesh each.
 inline constexpr int kPlacementGrades = 4;
 
-/// At most kPlacementGrades numbers in place of all: the means of those that are about as large.
-std::vector<double> graded(const std::vector<double>& shares);
+/// The share of the sky that what is around a placement leaves it, and how that changes over it: its
+/// crown is lighter than its stem.
+struct PlacementShade {
+    double share = 1;        // in the mean
+    glm::dvec3 slope{0.0};   // by metre of its own frame
+    glm::dvec3 middle{0.0};  // own frame: where it is the mean
+};
+
+/// At most kPlacementGrades shades in place of all: the means of those whose shares are about as
+/// large.
+std::vector<PlacementShade> graded(const std::vector<PlacementShade>& shades);
 
 }  // namespace lodestone::povray

@@ -21,10 +21,12 @@ uint8_t grade_of_share(double share);
 struct SkyLight {
     std::shared_ptr<const light::SkyShares> shares;  // null: `factor` alone
     double factor = 1;                               // on all shares: what is around the thing
-    Hash hash = 0;                                   // of both
+    glm::dvec3 slope{0.0};   // of the factor, by metre of the thing's own frame
+    glm::dvec3 middle{0.0};  // own frame: where the factor is that
+    Hash hash = 0;           // of both
 
-    /// The grade of a corner of the split mesh.
-    uint8_t grade(size_t triangle, int corner) const;
+    /// The grade of a corner of the split mesh, which lies there (own frame).
+    uint8_t grade(size_t triangle, int corner, const glm::vec3& at) const;
 };
 using SkyLightPtr = std::shared_ptr<const SkyLight>;
 

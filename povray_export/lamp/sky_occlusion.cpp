@@ -20,7 +20,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 12;
+constexpr uint32_t kBakeVersion = 13;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -78,7 +78,7 @@ private:
         const Representation* representation = nullptr;
         std::vector<Affine> places;
         std::vector<light::SkyMeans> found;
-        std::vector<double> ratios;  // graded
+        std::vector<PlacementShade> shades;  // graded
         Hash key = 0;
     };
 
@@ -369,7 +369,9 @@ private:
                 found[i] = mean_sky_shares(request, rays);
                 progress.add(static_cast<uint64_t>(rays));
             });
-            wanted->found = std::move(found);
+            // The numbers are those that are kept, so that the next picture has the same.
+            auto kept = light::means_of(light::bytes_of(found), found.size());
+            wanted->found = kept ? std::move(*kept) : std::move(found);
         }
     }
 
@@ -388,10 +390,12 @@ private:
 
     void light_all() {
         for (auto& [hash, wanted] : wanted_means_) {
-            for (const light::SkyMeans& mean : wanted.found)
-                wanted.ratios.push_back(mean.alone > 0 ? limited(mean.placed / mean.alone, 0, 1)
-                                                       : 1);
-            wanted.ratios = graded(wanted.ratios);
+            std::vector<PlacementShade> shades;
+            for (const light::SkyMeans& mean : wanted.found) {
+                const double ratio = mean.alone > 0 ? limited(mean.placed / mean.alone, 0, 1) : 1;
+                shades.push_back({ratio, mean.slope, mean.middle});
+            }
+            wanted.shades = graded(shades);
         }
         lights_.resize(all_.things().size());
         means_.resize(all_.things().size(), 1);
@@ -406,14 +410,19 @@ private:
             }
             auto light = std::make_shared<SkyLight>();
             light->shares = shares_of_[i]->found;
-            light->factor = means != nullptr ? stepped_factor(means->ratios[number]) : 1;
+            if (means != nullptr) {
+                const PlacementShade& shade = means->shades[number];
+                light->factor = stepped_factor(shade.share);
+                light->slope = shade.slope;
+                light->middle = shade.middle;
+            }
             const Hash key = key_of(all_.things()[i], shares_of_[i]->placed != nullptr);
-            light->hash = Hasher()
-                              .value(key)
-                              .value(light->factor)
-                              .value(light->shares->rays)
-                              .array(std::span<const uint8_t>(light->shares->seen))
-                              .result();
+            Hasher hasher;
+            hasher.value(key).value(light->factor).value(light->shares->rays);
+            for (int axis = 0; axis < 3; ++axis)
+                hasher.value(light->slope[axis]).value(light->middle[axis]);
+            hasher.array(std::span<const uint8_t>(light->shares->seen));
+            light->hash = hasher.result();
             if (means == nullptr)
                 means_[i] = light->shares->mean;
             lights_[i] = std::move(light);
@@ -430,13 +439,13 @@ private:
                 alike[all_.finest_of(thing).summary.hash].push_back(i);
         }
         for (const auto& [hash, numbers] : alike) {
-            std::vector<double> means;
+            std::vector<PlacementShade> means;
             means.reserve(numbers.size());
             for (const size_t i : numbers)
-                means.push_back(means_[i]);
+                means.push_back({means_[i], {}, {}});
             means = graded(means);
             for (size_t i = 0; i < numbers.size(); ++i)
-                means_[numbers[i]] = means[i];
+                means_[numbers[i]] = means[i].share;
         }
     }
 

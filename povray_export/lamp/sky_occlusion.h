@@ -41,7 +41,8 @@ struct SkyOcclusionOptions {
 /// The sky's light on everything that a cut draws. What hides the sky are the finest levels of all
 /// that rests, whatever the cut draws, so that shade does not change as the camera moves. A thing
 /// that is placed once has the shares of its corners as it stands there. What is placed more often
-/// has those of its own shape, times one of at most four grades of what is around its placement.
+/// has those of its own shape, times one of at most four grades of what is around its placement,
+/// which changes evenly over the thing.
 /// Levels have the light of the outermost places near them of their finest level, and what stands in for a group
 /// that of all below it. What moves in an animation hides the sky from itself alone.
 class SkyOcclusion {

@@ -306,10 +306,10 @@ uint8_t MeshTextures::sky_grade(size_t triangle, int corner) const {
     const size_t source = cut_.any ? cut_.sources[triangle] : triangle;
     const bool whole = !cut_.any || shown_.triangles[triangle] == mesh_.triangles[source];
     if (whole && !slots_[slot_at_[mesh_.slot(source)]].even_sky)
-        return sky_->grade(source, corner);
+        return sky_->grade(source, corner, mesh_.positions[mesh_.triangles[source][corner]]);
     int sum = 1;  // rounds to the nearest
     for (int i = 0; i < 3; ++i)
-        sum += sky_->grade(source, i);
+        sum += sky_->grade(source, i, mesh_.positions[mesh_.triangles[source][i]]);
     return static_cast<uint8_t>(sum / 3);
 }
 

@@ -5,23 +5,43 @@
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <memory>
 #include <numeric>
 #include <set>
 
 using namespace lodestone::povray;
 
+namespace {
+
+std::vector<PlacementShade> shades_of(const std::vector<double>& shares) {
+    std::vector<PlacementShade> out;
+    for (const double share : shares)
+        out.push_back({share, {}, {}});
+    return out;
+}
+
+/// The shares alone, graded.
+std::vector<double> graded_shares(const std::vector<double>& shares) {
+    std::vector<double> out;
+    for (const PlacementShade& shade : graded(shades_of(shares)))
+        out.push_back(shade.share);
+    return out;
+}
+
+}  // namespace
+
 TEST(PlacementGrades, NoneAndOneStayAsTheyAre) {
-    EXPECT_TRUE(graded({}).empty());
-    EXPECT_EQ(graded({0.3}), std::vector<double>{0.3});
-    EXPECT_EQ(graded({0, 0, 0}), std::vector<double>(3, 0));
-    EXPECT_EQ(graded({1, 1}), std::vector<double>(2, 1));
+    EXPECT_TRUE(graded_shares({}).empty());
+    EXPECT_EQ(graded_shares({0.3}), std::vector<double>{0.3});
+    EXPECT_EQ(graded_shares({0, 0, 0}), std::vector<double>(3, 0));
+    EXPECT_EQ(graded_shares({1, 1}), std::vector<double>(2, 1));
 }
 
 TEST(PlacementGrades, WhatIsAboutAsLightSharesAGrade) {
-    const std::vector<double> shares = graded({0.50, 0.52, 0.54});
+    const std::vector<double> shares = graded_shares({0.50, 0.52, 0.54});
     EXPECT_EQ(std::set<double>(shares.begin(), shares.end()).size(), 1u);
     EXPECT_NEAR(shares[0], 0.52, 1e-12);
-    const std::vector<double> apart = graded({0.1, 0.9});
+    const std::vector<double> apart = graded_shares({0.1, 0.9});
     EXPECT_EQ(apart, (std::vector<double>{0.1, 0.9}));
 }
 
@@ -29,12 +49,35 @@ TEST(PlacementGrades, ThereAreFourAtMostOfTheSameMeanAndOrder) {
     std::vector<double> shares;
     for (int i = 0; i <= 100; ++i)
         shares.push_back(i / 100.0);
-    const std::vector<double> grades = graded(shares);
+    const std::vector<double> grades = graded_shares(shares);
     ASSERT_EQ(grades.size(), shares.size());
     EXPECT_EQ(std::set<double>(grades.begin(), grades.end()).size(), size_t{kPlacementGrades});
     EXPECT_TRUE(std::is_sorted(grades.begin(), grades.end()));
     EXPECT_NEAR(std::accumulate(grades.begin(), grades.end(), 0.0),
                 std::accumulate(shares.begin(), shares.end(), 0.0), 1e-9);
+}
+
+TEST(PlacementGrades, SlopesAreTheMeansOfTheirGrade) {
+    const std::vector<PlacementShade> found = graded(
+        {{0.5, {1, 0, 0}, {0, 0, 2}}, {0.1, {0, 8, 0}, {5, 0, 0}}, {0.5, {0, 0, 3}, {0, 0, 4}}});
+    EXPECT_EQ(found[0].slope, glm::dvec3(0.5, 0, 1.5));
+    EXPECT_EQ(found[0].middle, glm::dvec3(0, 0, 3));
+    EXPECT_EQ(found[2].slope, found[0].slope);
+    EXPECT_EQ(found[1].slope, glm::dvec3(0, 8, 0));
+}
+
+TEST(SkyGrades, ACornerHasTheShareOfItsPlace) {
+    SkyLight light;
+    auto shares = std::make_shared<lodestone::light::SkyShares>();
+    shares->corners.assign(3, lodestone::light::share_byte(1));
+    light.shares = shares;
+    light.factor = 0.5;
+    light.slope = {0, 0, 0.25};
+    light.middle = {0, 0, 1};
+    EXPECT_EQ(light.grade(0, 1, {7, 7, 1}), grade_of_share(0.5));
+    EXPECT_EQ(light.grade(0, 1, {7, 7, 2}), grade_of_share(0.75));
+    EXPECT_EQ(light.grade(0, 1, {7, 7, 9}), grade_of_share(1));
+    EXPECT_EQ(light.grade(0, 1, {7, 7, -9}), grade_of_share(0));
 }
 
 TEST(SkyGrades, AreTheNearestToShares) {

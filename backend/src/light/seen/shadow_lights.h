@@ -17,8 +17,8 @@ struct ShadowLight {
     bool sun = true;
     glm::dvec3 way{0, 0, 1};  // of a sun: to it; of a spot or an area: where it shines; unit
     double radius = 0;        // of a sun's disk at distance 1; of a lamp: from its middle, metres
-    double strength = 0;     // of a sun: W/m^2; of a lamp: that at 1 m from it; of any color
-    double cone_cosine = 0;  // of a spot or an area: it shines where that of its angle is more
+    double strength = 0;      // of a sun: W/m^2; of a lamp: that at 1 m from it; of any color
+    double cone_cosine = 0;   // of a spot or an area: it shines where that of its angle is more
 };
 
 /// The lights that throw shadows, those that take light away, too. The lights must outlive them.

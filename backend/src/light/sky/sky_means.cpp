@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light/sky/sky_means.h"
 
+#include "base/maths.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace lodestone::light {
@@ -29,6 +35,56 @@ struct LeafSums {
     }
 };
 
+/// The rays that the surface itself lets pass: from where they begin, and whether the rest does.
+class PassedRays {
+public:
+    void add(const glm::dvec3& from, double weight, double seen) {
+        rays_.push_back({from, weight, seen});
+        sum_ += weight;
+        seen_ += weight * seen;
+        from_ += weight * from;
+    }
+
+    /// Fits a slope to them.
+    void fit(SkyMeans& out) const {
+        // Rays that speak for no slope, so that a few do not tell of a steep one by chance.
+        // Taste: a larger value flattens slopes that are true where rays are few.
+        constexpr double kLevelRays = 4;
+        if (!(sum_ > 0))
+            return;
+        out.middle = from_ / sum_;
+        glm::dmat3 spread(0.0);
+        glm::dvec3 rise(0.0);
+        for (const PassedRay& ray : rays_) {
+            const glm::dvec3 way = ray.from - out.middle;
+            spread += ray.weight / sum_ * glm::outerProduct(way, way);
+            rise += ray.weight / sum_ * (ray.seen - seen_ / sum_) * way;
+        }
+        const double level = kLevelRays / static_cast<double>(rays_.size()) *
+                             (spread[0][0] + spread[1][1] + spread[2][2]) / 3;
+        for (int i = 0; i < 3; ++i)
+            spread[i][i] += level;
+        const glm::dvec3 slope = glm::inverse(spread) * rise;
+        if (finite(slope))
+            out.slope = slope;
+    }
+
+private:
+    struct PassedRay {
+        glm::dvec3 from;
+        double weight;
+        double seen;
+    };
+    std::vector<PassedRay> rays_;
+    double sum_ = 0;
+    double seen_ = 0;
+    glm::dvec3 from_{0.0};
+};
+
+// The numbers of each of the means that are kept.
+// Law: of another number of them, a list of means is damaged.
+constexpr size_t kNumbers = 8;
+
 }  // namespace
 
 SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
@@ -42,6 +98,7 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     const ray::FlushDenormals fast;
     MeanSums all;
     MeanSums inside;
+    PassedRays passed;
     LeafSums leaves;
     uint32_t blocker = ray::PlacedScenes::kNothing;
     uint32_t near = ray::kNoTriangle;
@@ -65,6 +122,8 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         const SkySampler::SkyRay ray = sampler.ray(place, both && i % 2 == 1);
         const double alone = ray.open && !sampler.hidden_alone(ray) ? 1 : 0;
         const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
+        if (alone > 0)
+            passed.add(place.at, weight, seen);
         all.placed += weight * seen;
         all.alone += weight * alone;
         all.rays += weight;
@@ -88,30 +147,38 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         out.alone = std::min(1.0, (all.alone + leaves.more(&MeanSums::alone)) / all.rays);
         out.placed = std::min(out.alone, (all.placed + leaves.more(&MeanSums::placed)) / all.rays);
     }
+    passed.fit(out);
     return out;
 }
 
 std::string bytes_of(const std::vector<SkyMeans>& means) {
-    std::string out(means.size() * 2 * sizeof(float), '\0');
-    for (size_t i = 0; i < means.size(); ++i) {
-        const float pair[] = {static_cast<float>(means[i].placed),
-                              static_cast<float>(means[i].alone)};
-        std::memcpy(out.data() + i * sizeof pair, pair, sizeof pair);
+    std::string out;
+    for (const SkyMeans& one : means) {
+        const std::array<double, kNumbers> numbers{one.placed,   one.alone,   one.slope.x,
+                                                   one.slope.y,  one.slope.z, one.middle.x,
+                                                   one.middle.y, one.middle.z};
+        for (const double number : numbers) {
+            const auto value = static_cast<float>(number);
+            out.append(reinterpret_cast<const char*>(&value), sizeof value);
+        }
     }
     return out;
 }
 
 std::optional<std::vector<SkyMeans>> means_of(std::string_view bytes, size_t count) {
-    float pair[2];
-    if (bytes.size() != count * sizeof pair)
+    std::array<float, kNumbers> numbers{};
+    if (bytes.size() != count * sizeof numbers)
         return {};
-    std::vector<SkyMeans> out(count);
+    std::vector<SkyMeans> out;
     for (size_t i = 0; i < count; ++i) {
-        std::memcpy(pair, bytes.data() + i * sizeof pair, sizeof pair);
+        std::memcpy(numbers.data(), bytes.data() + i * sizeof numbers, sizeof numbers);
+        const auto [placed, alone, sx, sy, sz, mx, my, mz] = numbers;
+        const SkyMeans one{placed, alone, {sx, sy, sz}, {mx, my, mz}};
         // Things around another one hide more of its sky, never less.
-        if (!(pair[0] >= 0 && pair[0] <= pair[1] && pair[1] <= 1))
+        if (!(placed >= 0 && placed <= alone && alone <= 1) || !finite(one.slope) ||
+            !finite(one.middle))
             return {};
-        out[i] = {pair[0], pair[1]};
+        out.push_back(one);
     }
     return out;
 }

@@ -11,12 +11,16 @@
 
 namespace lodestone::light {
 
-/// The means, over the surface, of the shares of the whole request and of the surface alone, by so
-/// many rays.
+/// The means, over the surface, of the shares of the whole request and of the surface alone.
 struct SkyMeans {
     double placed = 1;
     double alone = 1;
+    /// The change of placed / alone over the surface, by metre of its own frame: what is around a
+    /// tree hides more from its stem than from its crown. It is 0 where too few rays tell.
+    glm::dvec3 slope{0.0};
+    glm::dvec3 middle{0.0};  // own frame: the place where it is the mean
 };
+/// Those that so many rays tell.
 SkyMeans mean_sky_shares(const SkyRequest& request, int rays);
 
 /// The means of a list of placements as bytes that are kept, and back; none where they are damaged.
