@@ -160,23 +160,26 @@ class View:
         command = ["blender", "-b", "--factory-startup", self.blend, "--python-expr", "pass"]
         return cpu_of(command, self.out / "open.log")
 
-    def cycles(self, samples: int, transparent: bool = False) -> tuple[Path, float]:
-        """A picture by Cycles and the CPU of its process; kept, for it depends on nothing here."""
+    def cycles(self, samples: int, transparent: bool = False) -> Path:
+        """A picture by Cycles; kept, for it depends on nothing here."""
         kind = "mask" if transparent else "picture"
         picture = self.kept / f"cycles_{kind}_{samples}.png"
-        told = picture.with_suffix(".json")
-        if not (picture.is_file() and told.is_file()):
-            job = {
-                "camera": self.camera, "size": self.options.size, "out": str(picture),
-                "samples": samples, "bounces": 0, "transparent": transparent,
-            }  # fmt: skip
-            asked = picture.with_suffix(".job")
-            asked.write_text(json.dumps(job), "utf-8")
-            command = ["blender", "-b", "--factory-startup", self.blend]
-            command += ["--python-exit-code", "1", "--python", INSIDE, "--", "cycles", asked]
-            cpu = cpu_of(command, picture.with_suffix(".log"))
-            told.write_text(json.dumps({"cpu_s": cpu}), "utf-8")
-        return picture, json.loads(told.read_text("utf-8"))["cpu_s"]
+        if not picture.is_file():
+            self.cycles_cpu(samples, picture, transparent)
+        return picture
+
+    def cycles_cpu(self, samples: int, picture: Path, transparent: bool = False) -> float:
+        """The CPU of Cycles' process for a picture. Never kept: a machine is not as fast at one
+        time as at another, so both programs are timed in one run."""
+        job = {
+            "camera": self.camera, "size": self.options.size, "out": str(picture),
+            "samples": samples, "bounces": 0, "transparent": transparent,
+        }  # fmt: skip
+        asked = self.out / f"{picture.stem}.job"
+        asked.write_text(json.dumps(job), "utf-8")
+        command = ["blender", "-b", "--factory-startup", self.blend]
+        command += ["--python-exit-code", "1", "--python", INSIDE, "--", "cycles", asked]
+        return cpu_of(command, asked.with_suffix(".log"))
 
     @property
     def store(self) -> Path:
@@ -213,9 +216,10 @@ class View:
     def measure(self) -> dict:
         """All numbers of the view."""
         opening = self.opening()
-        mask, _ = self.cycles(4, transparent=True)
-        converged, _ = self.cycles(CONVERGED)
-        noisy, took = self.cycles(SAMPLES)
+        mask = self.cycles(4, transparent=True)
+        converged = self.cycles(CONVERGED)
+        noisy = self.cycles(SAMPLES)
+        took = self.cycles_cpu(SAMPLES, self.out / "cycles.png")
         covered = pixels(mask)[:, :, 3] >= 0.5
         found = {
             "opening_s": opening,

@@ -59,7 +59,7 @@ class RivalView(bench_real.View):
     def measure_rival(self) -> dict:
         """All numbers of the view."""
         opening = self.opening()
-        mask, _ = self.cycles(4, transparent=True)
+        mask = self.cycles(4, transparent=True)
         self.batch("build", "build")
         reference, _, _ = self.drawn("reference", 0, "--antialias", "reference")
 
