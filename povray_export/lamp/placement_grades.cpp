@@ -22,20 +22,20 @@ std::vector<PlacementShade> graded(const std::vector<PlacementShade>& shades) {
         const double place = high > low ? (std::sqrt(shade.share) - low) / (high - low) : 0;
         return static_cast<size_t>(std::clamp(static_cast<int>(place * count), 0, count - 1));
     };
-    std::vector<PlacementShade> means(static_cast<size_t>(count), PlacementShade{0, {}, {}});
+    std::vector<PlacementShade> means(static_cast<size_t>(count), PlacementShade{0, 0, {}});
     std::vector<double> members(static_cast<size_t>(count), 0);
     for (const PlacementShade& shade : shades) {
         PlacementShade& mean = means[grade_of(shade)];
         mean.share += shade.share;
-        mean.slope += shade.slope;
         mean.middle += shade.middle;
+        mean.slope += shade.slope;
         members[grade_of(shade)] += 1;
     }
     for (size_t i = 0; i < means.size(); ++i) {
         const double divisor = std::max(members[i], 1.0);
         means[i].share /= divisor;
-        means[i].slope /= divisor;
         means[i].middle /= divisor;
+        means[i].slope /= divisor;
     }
     std::vector<PlacementShade> out;
     out.reserve(shades.size());

@@ -15,9 +15,9 @@ inline constexpr int kPlacementGrades = 4;
 /// The share of the sky that what is around a placement leaves it, and how that changes over it: its
 /// crown is lighter than its stem.
 struct PlacementShade {
-    double share = 1;        // in the mean
-    glm::dvec3 slope{0.0};   // by metre of its own frame
-    glm::dvec3 middle{0.0};  // own frame: where it is the mean
+    double share = 1;       // the mean over its surface
+    double middle = 1;      // in its middle, perhaps not of 0...1 where the slope is steep
+    glm::dvec3 slope{0.0};  // by metre of its own frame
 };
 
 /// At most kPlacementGrades shades in place of all: the means of those whose shares are about as

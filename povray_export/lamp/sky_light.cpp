@@ -3,17 +3,49 @@
 
 #include "base/maths.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <cmath>
 
 namespace lodestone::povray {
 
+namespace {
+
+// The steps of a factor.
+// Taste: fine enough to keep means, coarse enough that rounding does not make other files.
+constexpr double kFactorSteps = 256;
+
+}  // namespace
+
 double stepped_factor(double factor) {
-    // The steps of a factor.
-    // Taste: fine enough to keep means, coarse enough that rounding does not make other files.
-    constexpr double kFactorSteps = 256;
     return std::round(limited(factor, 0, 1) * kFactorSteps) / kFactorSteps;
+}
+
+glm::dvec3 stepped_slope(const glm::dvec3& slope, double size) {
+    const double step = std::exp2(std::floor(-std::log2(kFactorSteps * size)));
+    const glm::dvec3 out = glm::round(slope / step) * step;
+    return finite(out) ? out : glm::dvec3(0.0);
+}
+
+SkyLightPtr sky_light(Hash shares_hash, std::shared_ptr<const light::SkyShares> shares,
+                      const PlacementShade& around, const Box3& box) {
+    auto out = std::make_shared<SkyLight>();
+    out->factor = stepped_factor(around.middle);
+    out->slope = stepped_slope(around.slope, glm::length(box.size()));
+    if (out->slope != glm::dvec3(0.0))
+        out->middle = box.center();
+    out->hash = Hasher()
+                    .value(shares_hash)
+                    .value(out->factor)
+                    .value(shares->rays)
+                    .value(out->slope.x)
+                    .value(out->slope.y)
+                    .value(out->slope.z)
+                    .array(std::span<const uint8_t>(shares->seen))
+                    .result();
+    out->shares = std::move(shares);
+    return out;
 }
 
 SkyLightPtr even_sky_light(double factor) {

@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "light/sky/sky_visibility.h"
+#include "povray_export/lamp/placement_grades.h"
 
 #include <memory>
 
@@ -23,7 +24,7 @@ struct SkyLight {
     double factor = 1;                               // on all shares: what is around the thing
     glm::dvec3 slope{0.0};   // of the factor, by metre of the thing's own frame
     glm::dvec3 middle{0.0};  // own frame: where the factor is that
-    Hash hash = 0;           // of both
+    Hash hash = 0;           // of all of it
 
     /// The grade of a corner of the split mesh, which lies there (own frame).
     uint8_t grade(size_t triangle, int corner, const glm::vec3& at) const;
@@ -32,6 +33,12 @@ using SkyLightPtr = std::shared_ptr<const SkyLight>;
 
 /// A factor without digits that would only make other files.
 double stepped_factor(double factor);
+/// The same of a slope, by metre of a thing that is so large.
+glm::dvec3 stepped_slope(const glm::dvec3& slope, double size);
+/// The light on a thing by its shares, which a hash stands for, times what is around it; `box`: of
+/// its finest level, own frame.
+SkyLightPtr sky_light(Hash shares_hash, std::shared_ptr<const light::SkyShares> shares,
+                      const PlacementShade& around, const Box3& box);
 /// The same light on all of a thing.
 SkyLightPtr even_sky_light(double factor);
 

@@ -20,7 +20,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 13;
+constexpr uint32_t kBakeVersion = 14;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -393,7 +393,9 @@ private:
             std::vector<PlacementShade> shades;
             for (const light::SkyMeans& mean : wanted.found) {
                 const double ratio = mean.alone > 0 ? limited(mean.placed / mean.alone, 0, 1) : 1;
-                shades.push_back({ratio, mean.slope, mean.middle});
+                const glm::dvec3 middle = wanted.representation->summary.bound.box.center();
+                shades.push_back(
+                    {ratio, ratio + glm::dot(mean.slope, middle - mean.middle), mean.slope});
             }
             wanted.shades = graded(shades);
         }
@@ -408,24 +410,13 @@ private:
                     lights_[i] = even_sky_light(share_of_grade(grade_of_share(means_[i])));
                 continue;
             }
-            auto light = std::make_shared<SkyLight>();
-            light->shares = shares_of_[i]->found;
-            if (means != nullptr) {
-                const PlacementShade& shade = means->shades[number];
-                light->factor = stepped_factor(shade.share);
-                light->slope = shade.slope;
-                light->middle = shade.middle;
-            }
-            const Hash key = key_of(all_.things()[i], shares_of_[i]->placed != nullptr);
-            Hasher hasher;
-            hasher.value(key).value(light->factor).value(light->shares->rays);
-            for (int axis = 0; axis < 3; ++axis)
-                hasher.value(light->slope[axis]).value(light->middle[axis]);
-            hasher.array(std::span<const uint8_t>(light->shares->seen));
-            light->hash = hasher.result();
+            const std::shared_ptr<const light::SkyShares>& shares = shares_of_[i]->found;
             if (means == nullptr)
-                means_[i] = light->shares->mean;
-            lights_[i] = std::move(light);
+                means_[i] = shares->mean;
+            const Hash key = key_of(all_.things()[i], shares_of_[i]->placed != nullptr);
+            lights_[i] = means == nullptr ? sky_light(key, shares, {}, {})
+                                          : sky_light(key, shares, means->shades[number],
+                                                      means->representation->summary.bound.box);
         }
         grade_means();
     }
@@ -442,7 +433,7 @@ private:
             std::vector<PlacementShade> means;
             means.reserve(numbers.size());
             for (const size_t i : numbers)
-                means.push_back({means_[i], {}, {}});
+                means.push_back({means_[i], means_[i], {}});
             means = graded(means);
             for (size_t i = 0; i < numbers.size(); ++i)
                 means_[numbers[i]] = means[i].share;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the few factors of many placements: they are few, and light no less than all of them.
+#include "base/maths.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_occlusion.h"
 
@@ -9,6 +10,7 @@
 #include <numeric>
 #include <set>
 
+using lodestone::kInfinity;
 using namespace lodestone::povray;
 
 namespace {
@@ -16,7 +18,7 @@ namespace {
 std::vector<PlacementShade> shades_of(const std::vector<double>& shares) {
     std::vector<PlacementShade> out;
     for (const double share : shares)
-        out.push_back({share, {}, {}});
+        out.push_back({share, share, {}});
     return out;
 }
 
@@ -58,12 +60,23 @@ TEST(PlacementGrades, ThereAreFourAtMostOfTheSameMeanAndOrder) {
 }
 
 TEST(PlacementGrades, SlopesAreTheMeansOfTheirGrade) {
-    const std::vector<PlacementShade> found = graded(
-        {{0.5, {1, 0, 0}, {0, 0, 2}}, {0.1, {0, 8, 0}, {5, 0, 0}}, {0.5, {0, 0, 3}, {0, 0, 4}}});
+    const std::vector<PlacementShade> found =
+        graded({{0.5, 0.25, {1, 0, 0}}, {0.1, 0.1, {0, 8, 0}}, {0.5, 1.25, {0, 0, 3}}});
     EXPECT_EQ(found[0].slope, glm::dvec3(0.5, 0, 1.5));
-    EXPECT_EQ(found[0].middle, glm::dvec3(0, 0, 3));
     EXPECT_EQ(found[2].slope, found[0].slope);
     EXPECT_EQ(found[1].slope, glm::dvec3(0, 8, 0));
+    EXPECT_EQ(found[0].middle, 0.75);
+    EXPECT_EQ(found[0].share, 0.5);
+}
+
+TEST(SkyGrades, ASlopeIsAsCoarseAsAFactorOverTheThing) {
+    EXPECT_EQ(stepped_slope({0.5, -0.25, 0}, 1), glm::dvec3(0.5, -0.25, 0));
+    EXPECT_EQ(stepped_slope({0.5001, 0.0001, 0}, 1), glm::dvec3(0.5, 0, 0));
+    EXPECT_EQ(stepped_slope({0.0501, 0, 0}, 100).x, stepped_slope({0.05011, 0, 0}, 100).x);
+    EXPECT_NEAR(100 * stepped_slope({0.0501, 0, 0}, 100).x, 5.01, 1.0 / 256);
+    for (const double size : {0.0, kInfinity, std::nan("")})
+        EXPECT_EQ(stepped_slope({1, 1, 1}, size), glm::dvec3(0.0));
+    EXPECT_EQ(stepped_slope(glm::dvec3(std::nan("")), 1), glm::dvec3(0.0));
 }
 
 TEST(SkyGrades, ACornerHasTheShareOfItsPlace) {

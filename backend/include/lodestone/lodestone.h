@@ -1162,8 +1162,8 @@ typedef struct lds_export_report {
     uint32_t struct_size;
     uint64_t bytes; /* bytes of all files the scene uses */
     uint64_t files;
-    uint64_t written; /* files that were not there yet */
-    double cpu_s;
+    uint64_t written;   /* files that were not there yet */
+    double cpu_s;       /* of the whole process while they were written */
     uint64_t lamps;     /* lights but suns */
     double lights_each; /* lights, of one lamp or standing for several, per point of the picture, on
                            average */

@@ -45,7 +45,7 @@ glm::dvec3 highlight_radiance(const Light& light, const LitPoint& point,
     const double n = shine.exponent;
     const double peak = (n + 2) / (4 * (2 - std::exp2(-n / 2)));  // Law: POV-Ray's specular albedo
     const double kept = 1 - shine.fading * (1 - fresnel_share(glm::dot(to_light, point.normal)));
-    // Single precision is a third of the time, and nobody sees a millionth of a highlight.
+    // Single precision is a third of the time, and nobody sees a thousandth of a highlight.
     const auto falloff =
         static_cast<double>(std::pow(static_cast<float>(cosine), static_cast<float>(n)));
     return shine.albedo * peak * kept * falloff * head_on;

@@ -5,11 +5,16 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <dlfcn.h>
+#include <exception>
+#include <limits>
 #include <new>
 #include <span>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 #if defined(__SSE2__)
@@ -58,6 +63,36 @@ void look_up(void* library, const char* name, Function& function, std::string& m
         function = reinterpret_cast<Function>(symbol);
 }
 
+/// The crossings of one ray while they are found.
+struct CrossingList {
+    std::vector<RayCrossing>& out;
+    size_t first;  // of `out`
+    size_t most;
+    const EndsRay& ends;
+    double limit = std::numeric_limits<double>::infinity();  // as many are nearer
+    std::exception_ptr failed = {};
+
+    /// Whether the ray ends at one more.
+    bool add(const RTCHit& hit, double t, double alpha) {
+        if (t > limit)
+            return false;
+        const bool stops = ends(hit.primID, alpha);
+        out.push_back(
+            {hit.primID, static_cast<double>(hit.u), static_cast<double>(hit.v), t, stops});
+        if (out.size() - first >= 2 * most) {
+            const auto begin = out.begin() + static_cast<std::ptrdiff_t>(first);
+            const auto last = begin + static_cast<std::ptrdiff_t>(most) - 1;
+            std::nth_element(begin, last, out.end(),
+                             [](const RayCrossing& a, const RayCrossing& b) {
+                                 return std::tie(a.t, a.triangle) < std::tie(b.t, b.triangle);
+                             });
+            limit = last->t;
+            out.resize(first + most);
+        }
+        return stops;
+    }
+};
+
 /// A ray context that remembers the best hit so far, for ties; or lists all hits.
 struct TieContext {
     RTCIntersectContext embree;
@@ -65,8 +100,7 @@ struct TieContext {
     unsigned triangle;
     std::span<uint32_t> list;  // empty: the first hit is wanted
     size_t listed;
-    std::vector<RayCrossing>* crossings;  // null: no crossings are wanted
-    const EndsRay* ends;
+    CrossingList* crossings;  // null: no crossings are wanted
 };
 
 /// Keeps the lowest triangle among hits at one distance: else the answer would depend on the order
@@ -77,12 +111,13 @@ void keep_lowest_of(const RTCFilterFunctionNArguments* arguments, double alpha) 
     const auto* ray = reinterpret_cast<const RTCRay*>(arguments->ray);
     const auto* hit = reinterpret_cast<const RTCHit*>(arguments->hit);
     if (best->crossings != nullptr) {
-        const bool ends = (*best->ends)(hit->primID, alpha);
-        best->crossings->push_back({hit->primID, static_cast<double>(hit->u),
-                                    static_cast<double>(hit->v), static_cast<double>(ray->tfar),
-                                    ends});
-        if (!ends)
-            arguments->valid[0] = 0;
+        // Nothing may be thrown through Embree.
+        try {
+            if (!best->crossings->add(*hit, static_cast<double>(ray->tfar), alpha))
+                arguments->valid[0] = 0;
+        } catch (...) {
+            best->crossings->failed = std::current_exception();
+        }
         return;
     }
     if (!best->list.empty()) {
@@ -379,12 +414,15 @@ size_t EmbreeTree::list_crossed(const glm::dvec3& origin, const glm::dvec3& dire
 }
 
 void EmbreeTree::list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                                const EndsRay& ends, std::vector<RayCrossing>& out) const {
+                                size_t most, const EndsRay& ends,
+                                std::vector<RayCrossing>& out) const {
     const FlushDenormals flush;
+    CrossingList list{out, out.size(), std::max<size_t>(most, 1), ends};
     TieContext context{};
-    context.crossings = &out;
-    context.ends = &ends;
+    context.crossings = &list;
     trace(found(), static_cast<RTCScene>(scene_), origin, direction, far, context);
+    if (list.failed)
+        std::rethrow_exception(list.failed);
 }
 
 namespace {

@@ -45,7 +45,7 @@ public:
                         std::span<uint32_t> list) const;
     /// Lists crossings like MeshScene::list_crossings(), with `t` in the tree's own frame.
     void list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                        const EndsRay& ends, std::vector<RayCrossing>& out) const;
+                        size_t most, const EndsRay& ends, std::vector<RayCrossing>& out) const;
 
 private:
     void* scene_;

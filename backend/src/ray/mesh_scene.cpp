@@ -212,13 +212,14 @@ size_t MeshScene::list_crossed(const glm::dvec3& origin, const glm::dvec3& direc
 }
 
 void MeshScene::list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                               const EndsRay& ends, std::vector<RayCrossing>& out) const {
+                               size_t most, const EndsRay& ends,
+                               std::vector<RayCrossing>& out) const {
     const Data& data = *data_;
     Data::RaySegment part;
     if (!data.clip(origin, direction, far, part))
         return;
     const size_t first = out.size();
-    data.tree->list_crossings(part.origin, part.direction, part.far, ends, out);
+    data.tree->list_crossings(part.origin, part.direction, part.far, most, ends, out);
     for (size_t i = first; i < out.size(); ++i) {
         RayCrossing& one = out[i];
         one.u = std::clamp(one.u, 0.0, 1.0);

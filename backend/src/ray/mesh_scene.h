@@ -126,10 +126,10 @@ public:
                         std::span<uint32_t> list) const;
 
     /// Adds to `out` the places with 0 <= t <= far where first_hit() might stop, in no order, at
-    /// least up to the nearest of those where `ends` says so: in one search what a call of
-    /// first_hit() for each would find.
+    /// least up to the nearest of those where `ends` says so, or the `most` nearest: in one search
+    /// what a call of first_hit() for each would find.
     void list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                        const EndsRay& ends, std::vector<RayCrossing>& out) const;
+                        size_t most, const EndsRay& ends, std::vector<RayCrossing>& out) const;
 
     /// The nearest point of any triangle within `radius` metres. A small radius is faster; so is
     /// `perhaps`, a triangle that may be near, which changes nothing else. With `enough`, some

@@ -37,8 +37,8 @@ public:
     /// The nearest hit with 0 <= t <= far; the placement added first wins among equally near ones.
     PlacedHit first_hit(const glm::dvec3& origin, const glm::dvec3& direction,
                         double far = std::numeric_limits<double>::infinity()) const;
-    /// Visits the placements whose boxes a ray meets within `far`, near ones before far ones, with
-    /// the ray in the frame of each. The visit returns how far the ray goes on.
+    /// Visits the placements whose boxes a ray meets within `far`, about near ones before far ones,
+    /// with the ray in the frame of each. The visit returns how far the ray goes on.
     using VisitPlaced =
         std::function<double(const MeshScene& scene, uint32_t name, const glm::dvec3& origin,
                              const glm::dvec3& direction, double far)>;

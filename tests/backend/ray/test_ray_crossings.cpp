@@ -38,7 +38,7 @@ protected:
     static std::vector<RayCrossing> crossings(const ray::MeshScene& scene, const glm::dvec3& origin,
                                               const glm::dvec3& direction, double far) {
         std::vector<RayCrossing> out;
-        scene.list_crossings(origin, direction, far, is_opaque, out);
+        scene.list_crossings(origin, direction, far, 64, is_opaque, out);
         std::sort(out.begin(), out.end(),
                   [](const RayCrossing& a, const RayCrossing& b) { return a.t < b.t; });
         const auto last =
@@ -117,6 +117,21 @@ TEST_F(RayCrossingsTest, TheyAreWhatRaysThatGoOnMeetOneByOne) {
             EXPECT_NEAR(met[k].t, expected[k], 1e-4);
     }
     EXPECT_GT(many, 100u);
+}
+
+TEST_F(RayCrossingsTest, OfVeryManyTheNearestAreListed) {
+    Mesh mesh;
+    for (int i = 0; i < 3000; ++i)
+        append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {0, 0, (i * 7) % 3000}});
+    const ray::MeshScene scene(mesh, skin_of({clear(0.999999)}));
+    std::vector<RayCrossing> out;
+    scene.list_crossings({0.25, 0.5, -1}, {0, 0, 1}, kInfinity, 64, is_opaque, out);
+    EXPECT_GE(out.size(), 64u);
+    EXPECT_LE(out.size(), 128u);
+    std::sort(out.begin(), out.end(),
+              [](const RayCrossing& a, const RayCrossing& b) { return a.t < b.t; });
+    for (size_t i = 0; i < 64; ++i)
+        EXPECT_NEAR(out[i].t, 1.0 + static_cast<double>(i), 1e-3);
 }
 
 TEST_F(RayCrossingsTest, LayersThatAreHalfClearAreMetByHalfOfTheRays) {

@@ -165,7 +165,9 @@ class View:
         kind = "mask" if transparent else "picture"
         picture = self.kept / f"cycles_{kind}_{samples}.png"
         if not picture.is_file():
-            self.cycles_cpu(samples, picture, transparent)
+            drawn = self.out / picture.name
+            self.cycles_cpu(samples, drawn, transparent)
+            shutil.move(drawn, picture)
         return picture
 
     def cycles_cpu(self, samples: int, picture: Path, transparent: bool = False) -> float:

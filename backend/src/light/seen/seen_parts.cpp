@@ -125,6 +125,8 @@ private:
         const auto rows = static_cast<size_t>(std::ceil(view_.height / spacing_));
         parallel_for(rows, [&](size_t row) {
             job_.check();
+            if (bends_)
+                return;  // nobody asks for what is found
             const ray::FlushDenormals fast;
             PcgRandom random(3, row);
             LightPicker picker(lights_);

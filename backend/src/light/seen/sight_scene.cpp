@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <tuple>
 #include <utility>
 
@@ -15,7 +16,7 @@ namespace {
 
 // The surfaces that a ray meets at most.
 // Taste: a larger value finds things behind more leaves of a crown, which hide them.
-constexpr ptrdiff_t kMostCrossings = 64;
+constexpr size_t kMostCrossings = 64;
 // The alpha from which on nothing is seen through a point.
 // Law: half a step of 8 bits.
 constexpr double kEnds = 1 - 0.5 / 255;
@@ -37,6 +38,18 @@ bool bends_rays(const Material& material, bool mirrors) {
     const bool own = material.transmission > 0 || (mirrors && material.normal_texture) ||
                      (mirrors && material.bump_texture);
     return own || (material.other && bends_rays(*material.other, mirrors));
+}
+
+bool nearer(const SightCrossing& a, const SightCrossing& b) {
+    return std::tie(a.way, a.drawn, a.triangle) < std::tie(b.way, b.drawn, b.triangle);
+}
+
+/// Keeps as many as a ray meets at most; returns the way to the last of them.
+double keep_nearest(std::vector<SightCrossing>& all) {
+    const auto last = all.begin() + static_cast<std::ptrdiff_t>(kMostCrossings) - 1;
+    std::nth_element(all.begin(), last, all.end(), nearer);
+    all.resize(kMostCrossings);
+    return all.back().way;
 }
 
 }  // namespace
@@ -95,42 +108,43 @@ SightScene::SightScene(const Model& model, const RendererSurfaces& renderer,
 
 void SightScene::cross(const SightWalk& walk, std::vector<SightCrossing>& out) const {
     out.clear();
-    std::vector<ray::RayCrossing> met;
+    thread_local std::vector<ray::RayCrossing> met;  // rays are many, and memory is slow to get
     double end = walk.far;
+    const auto visit = [&](const ray::MeshScene& mesh, uint32_t drawn, const glm::dvec3& origin,
+                           const glm::dvec3& direction, double far) {
+        if ((drawn_[drawn].hidden & walk.sees) != 0)
+            return far;
+        met.clear();
+        mesh.list_crossings(
+            origin, direction, far, kMostCrossings,
+            [&](uint32_t triangle, double alpha) {
+                return alpha >= kEnds && !transmits(drawn, triangle);
+            },
+            met);
+        for (const ray::RayCrossing& one : met) {
+            SightCrossing at;
+            at.drawn = drawn;
+            at.triangle = one.triangle;
+            at.u = one.u;
+            at.v = one.v;
+            at.way = one.t;
+            at.ends = one.ends;
+            out.push_back(at);
+            end = one.ends ? std::min(end, one.t) : end;
+        }
+        if (out.size() >= 2 * kMostCrossings)
+            end = std::min(end, keep_nearest(out));
+        return end;
+    };
     const ray::PlacedScenes& scene = walk.sees == kShadowRays ? shading_ : seen_;
-    scene.visit(walk.origin, walk.direction, walk.far,
-                [&](const ray::MeshScene& mesh, uint32_t drawn, const glm::dvec3& origin,
-                    const glm::dvec3& direction, double far) {
-                    if ((drawn_[drawn].hidden & walk.sees) != 0)
-                        return far;
-                    met.clear();
-                    mesh.list_crossings(
-                        origin, direction, far,
-                        [&](uint32_t triangle, double alpha) {
-                            return alpha >= kEnds && !transmits(drawn, triangle);
-                        },
-                        met);
-                    for (const ray::RayCrossing& one : met) {
-                        SightCrossing at;
-                        at.drawn = drawn;
-                        at.triangle = one.triangle;
-                        at.u = one.u;
-                        at.v = one.v;
-                        at.way = one.t;
-                        at.ends = one.ends;
-                        out.push_back(at);
-                        end = one.ends ? std::min(end, one.t) : end;
-                    }
-                    return end;
-                });
-    std::erase_if(out, [&](const SightCrossing& at) { return at.way > end; });
-    std::sort(out.begin(), out.end(), [](const SightCrossing& a, const SightCrossing& b) {
-        return std::tie(a.way, a.drawn, a.triangle) < std::tie(b.way, b.drawn, b.triangle);
-    });
+    scene.visit(walk.origin, walk.direction, walk.far, std::ref(visit));
+    std::erase_if(out, [&](const SightCrossing& at) { return !(at.way <= end); });
+    std::sort(out.begin(), out.end(), nearer);
     const auto last =
         std::find_if(out.begin(), out.end(), [](const SightCrossing& at) { return at.ends; });
-    const auto count = std::min<ptrdiff_t>(last - out.begin() + 1, kMostCrossings);
-    out.resize(std::min(out.size(), static_cast<size_t>(count)));
+    if (last != out.end())
+        out.erase(last + 1, out.end());
+    out.resize(std::min(out.size(), kMostCrossings));
     for (SightCrossing& at : out) {
         at.point = walk.origin + at.way * walk.direction;
         at.way += walk.way;

@@ -52,11 +52,11 @@ public:
         constexpr double kLevelRays = 4;
         if (!(sum_ > 0))
             return;
-        out.middle = from_ / sum_;
+        const glm::dvec3 middle = from_ / sum_;
         glm::dmat3 spread(0.0);
         glm::dvec3 rise(0.0);
         for (const PassedRay& ray : rays_) {
-            const glm::dvec3 way = ray.from - out.middle;
+            const glm::dvec3 way = ray.from - middle;
             spread += ray.weight / sum_ * glm::outerProduct(way, way);
             rise += ray.weight / sum_ * (ray.seen - seen_ / sum_) * way;
         }
@@ -65,8 +65,10 @@ public:
         for (int i = 0; i < 3; ++i)
             spread[i][i] += level;
         const glm::dvec3 slope = glm::inverse(spread) * rise;
-        if (finite(slope))
-            out.slope = slope;
+        if (!finite(slope) || !finite(middle))
+            return;
+        out.slope = slope;
+        out.middle = middle;
     }
 
 private:
@@ -122,8 +124,6 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         const SkySampler::SkyRay ray = sampler.ray(place, both && i % 2 == 1);
         const double alone = ray.open && !sampler.hidden_alone(ray) ? 1 : 0;
         const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
-        if (alone > 0)
-            passed.add(place.at, weight, seen);
         all.placed += weight * seen;
         all.alone += weight * alone;
         all.rays += weight;
@@ -137,6 +137,8 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         if (seen == 0 && !both && sampler.lies_inside(mesh, triangle, *placed)) {
             inside.alone += weight * alone;
             inside.rays += weight;
+        } else if (alone > 0) {
+            passed.add(place.at, weight, seen);
         }
     }
     if (inside.rays < all.rays) {

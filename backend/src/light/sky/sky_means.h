@@ -16,7 +16,7 @@ struct SkyMeans {
     double placed = 1;
     double alone = 1;
     /// The change of placed / alone over the surface, by metre of its own frame: what is around a
-    /// tree hides more from its stem than from its crown. It is 0 where too few rays tell.
+    /// tree hides more from its stem than from its crown. Few rays tell of flatter ones.
     glm::dvec3 slope{0.0};
     glm::dvec3 middle{0.0};  // own frame: the place where it is the mean
 };

@@ -421,18 +421,6 @@ TEST_F(SkyVisibility, OfAFlattenedBoxBesideAWallIsAHalf) {
     EXPECT_EQ(means.alone, 1);
 }
 
-// A crown that looked over a hedge was as dark as its stem.
-TEST_F(SkyVisibility, ATowerBetweenWallsIsLighterAboveThem) {
-    const ObjectIndex tower = builder.mesh(shapes::box({-1, -1, 0}, {1, 1, 8}));
-    const ObjectIndex wall = builder.mesh(shapes::box({0, -50, 0}, {1, 50, 4}));
-    const SkyMeans means =
-        means_of_first({{tower, {}}, {wall, moved({2, 0, 0})}, {wall, moved({-3, 0, 0})}});
-    EXPECT_GT(means.slope.z, 0.03);
-    EXPECT_LT(std::abs(means.slope.x), 0.03);
-    EXPECT_NEAR(means.middle.z, 4, 0.5);
-    EXPECT_EQ(means_of_first({{tower, {}}}).slope, glm::dvec3(0.0));
-}
-
 TEST_F(SkyVisibility, MeansThatCannotBeAreRefused) {
     const std::vector<SkyMeans> good = {{0.25, 0.5, {1, 0, -2}, {0, 3, 0}}, {1, 1}, {0, 0}};
     const auto back = means_of(bytes_of(good), 3);
