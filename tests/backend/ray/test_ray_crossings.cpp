@@ -89,6 +89,7 @@ TEST_F(RayCrossingsTest, ClearLayersAreMetUpToTheFirstThatIsOpaque) {
 
 TEST_F(RayCrossingsTest, TheyAreWhatRaysThatGoOnMeetOneByOne) {
     std::vector<Material> materials;
+    materials.reserve(12);
     for (int i = 0; i < 12; ++i)
         materials.push_back(i % 5 == 4 ? Material{} : clear(0.999999));
     materials[2] = foliage::leaf(foliage::left_half());
