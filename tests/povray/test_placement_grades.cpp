@@ -17,6 +17,7 @@ namespace {
 
 std::vector<PlacementShade> shades_of(const std::vector<double>& shares) {
     std::vector<PlacementShade> out;
+    out.reserve(shares.size());
     for (const double share : shares)
         out.push_back({share, share, {}});
     return out;
@@ -25,6 +26,7 @@ std::vector<PlacementShade> shades_of(const std::vector<double>& shares) {
 /// The shares alone, graded.
 std::vector<double> graded_shares(const std::vector<double>& shares) {
     std::vector<double> out;
+    out.reserve(shares.size());
     for (const PlacementShade& shade : graded(shades_of(shares)))
         out.push_back(shade.share);
     return out;

@@ -28,7 +28,8 @@ double exact(const Light& light, const glm::dvec3& point, const glm::dvec3& norm
     double sum = 0;
     for (int i = 0; i < kParts * kParts; ++i) {
         const double u = (i % kParts + 0.5) / kParts - 0.5;
-        const double v = (i / kParts + 0.5) / kParts - 0.5;
+        const int row = i / kParts;
+        const double v = (row + 0.5) / kParts - 0.5;
         if (light.round && u * u + v * v > 0.25)
             continue;
         const glm::dvec3 way = u * light.edge_u + v * light.edge_v - point;
