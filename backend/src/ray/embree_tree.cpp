@@ -12,7 +12,6 @@
 #include <exception>
 #include <limits>
 #include <new>
-#include <span>
 #include <thread>
 #include <tuple>
 #include <vector>
@@ -98,9 +97,7 @@ struct TieContext {
     RTCIntersectContext embree;
     float t;
     unsigned triangle;
-    std::span<uint32_t> list;  // empty: the first hit is wanted
-    size_t listed;
-    CrossingList* crossings;  // null: no crossings are wanted
+    CrossingList* crossings;  // null: the first hit is wanted
 };
 
 /// Keeps the lowest triangle among hits at one distance: else the answer would depend on the order
@@ -118,12 +115,6 @@ void keep_lowest_of(const RTCFilterFunctionNArguments* arguments, double alpha) 
         } catch (...) {
             best->crossings->failed = std::current_exception();
         }
-        return;
-    }
-    if (!best->list.empty()) {
-        if (best->listed < best->list.size())
-            best->list[best->listed++] = hit->primID;
-        arguments->valid[0] = 0;
         return;
     }
     if (ray->tfar == best->t && hit->primID > best->triangle) {
@@ -402,15 +393,6 @@ EmbreeTree::EmbreeHit EmbreeTree::first_hit(const glm::dvec3& origin, const glm:
     out.v = static_cast<double>(ray.hit.v);
     out.t = static_cast<double>(ray.ray.tfar);
     return out;
-}
-
-size_t EmbreeTree::list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                                std::span<uint32_t> list) const {
-    const FlushDenormals flush;
-    TieContext context{};
-    context.list = list;
-    trace(found(), static_cast<RTCScene>(scene_), origin, direction, far, context);
-    return context.listed;
 }
 
 void EmbreeTree::list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,

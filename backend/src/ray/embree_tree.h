@@ -40,9 +40,6 @@ public:
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction, double far) const;
     /// Some triangle that blocks a ray without end; kNoTriangle: none does.
     uint32_t blocker(const glm::dvec3& origin, const glm::dvec3& direction) const;
-    /// Lists crossed triangles like MeshScene::list_crossed().
-    size_t list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                        std::span<uint32_t> list) const;
     /// Lists crossings like MeshScene::list_crossings(), with `t` in the tree's own frame.
     void list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                         size_t most, const EndsRay& ends, std::vector<RayCrossing>& out) const;

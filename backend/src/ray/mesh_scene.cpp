@@ -202,15 +202,6 @@ bool MeshScene::occluded(const glm::dvec3& origin, const glm::dvec3& direction,
     return true;
 }
 
-size_t MeshScene::list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                               std::span<uint32_t> list) const {
-    const Data& data = *data_;
-    Data::RaySegment part;
-    if (list.empty() || !data.clip(origin, direction, far, part))
-        return 0;
-    return data.tree->list_crossed(part.origin, part.direction, part.far, list);
-}
-
 void MeshScene::list_crossings(const glm::dvec3& origin, const glm::dvec3& direction, double far,
                                size_t most, const EndsRay& ends,
                                std::vector<RayCrossing>& out) const {

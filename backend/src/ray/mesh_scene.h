@@ -10,7 +10,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -119,11 +118,6 @@ public:
     /// (see RecentBlockers).
     bool occluded(const glm::dvec3& origin, const glm::dvec3& direction,
                   RecentBlockers& blockers) const;
-
-    /// Lists the triangles that end rays where this ray crosses them with 0 <= t <= far, in no
-    /// order, as many as `list` has room for. Returns how many were listed.
-    size_t list_crossed(const glm::dvec3& origin, const glm::dvec3& direction, double far,
-                        std::span<uint32_t> list) const;
 
     /// Adds to `out` the places with 0 <= t <= far where first_hit() might stop, in no order, at
     /// least up to the nearest of those where `ends` says so, or the `most` nearest: in one search

@@ -204,22 +204,6 @@ TEST(ClosestTree, ScenesForClosestPointsRefuseRaysByName) {
         kInfinity);
 }
 
-TEST(Ray, CrossedTrianglesAreListed) {
-    Mesh mesh;
-    for (int i = 0; i < 5; ++i)
-        append(mesh, shapes::quad(1, 1), {glm::dmat3(1.0), {0, 0, i}});
-    const ray::MeshScene scene(mesh);
-    std::array<uint32_t, 8> list{};
-    ASSERT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 3, list), 3u);
-    std::sort(list.begin(), list.begin() + 3);
-    EXPECT_EQ(list[0], 0u);
-    EXPECT_EQ(list[1], 2u);
-    EXPECT_EQ(list[2], 4u);
-    EXPECT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 9, std::span(list).first(2)), 2u);
-    EXPECT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, -1}, 9, list), 0u);
-    EXPECT_EQ(scene.list_crossed({0.75, 0.25, -0.5}, {0, 0, 1}, 9, {}), 0u);
-}
-
 // The front of a thin board is the place of what faces as it does, though its back is nearer.
 TEST(ClosestTree, OfWhatFacesOneWayTheNearestIsFound) {
     std::string reason;

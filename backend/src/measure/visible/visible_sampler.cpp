@@ -28,7 +28,7 @@ constexpr double kPointsOfLine = 1.5;
 /// Taste: a larger value spares more pilots where lines could be surer.
 constexpr uint32_t kFewMisses = 2;
 /// Triangles in one place that are told apart.
-/// Taste: a larger value counts denser stacks of coincident surfaces right, and costs stack memory.
+/// Taste: a larger value counts denser stacks of coincident surfaces right, and costs memory.
 constexpr size_t kMostInOnePlace = 16;
 
 /// Every point that a triangle uses and that is finite, once.
@@ -239,14 +239,15 @@ bool VisibleSampler::reaches_infinity(const VisiblePoint& from,
 }
 
 bool VisibleSampler::is_first(const VisiblePoint& point) const {
-    std::array<uint32_t, kMostInOnePlace> others;
-    const size_t count = scene_->list_crossed(point.point + lift_ * point.seen_from,
-                                              -point.seen_from, 2 * lift_, others);
-    for (size_t i = 0; i < count; ++i) {
-        if (others[i] >= point.triangle)
+    std::vector<ray::RayCrossing> others;
+    scene_->list_crossings(
+        point.point + lift_ * point.seen_from, -point.seen_from, 2 * lift_, kMostInOnePlace,
+        [](uint32_t /*triangle*/, double /*alpha*/) { return false; }, others);
+    for (const ray::RayCrossing& other : others) {
+        if (other.triangle >= point.triangle)
             continue;
-        const double along = glm::dot(area_vector(*mesh_, others[i]), point.seen_from);
-        const VisibleSide side = sides_.of[others[i]];
+        const double along = glm::dot(area_vector(*mesh_, other.triangle), point.seen_from);
+        const VisibleSide side = sides_.of[other.triangle];
         if (side == VisibleSide::Both || (side == VisibleSide::Front ? along > 0 : along < 0))
             return false;
     }
