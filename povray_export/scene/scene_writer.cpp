@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/files.h"
 #include "base/parallel.h"
+#include "image/kept_pixels.h"
 #include "light/light_arrival.h"
 #include "light/light_plan.h"
 #include "povray_export/lamp/light_writer.h"
@@ -479,6 +480,7 @@ private:
 
 ExportReport export_scene(const Model& model, const choose::Cut& cut, const View& view,
                           const ExportOptions& options, Problems& problems, const Job& job) {
+    const image::KeptPixels decoded;  // masks, light and files look at the same pictures
     return SceneWriter(model, cut, view, options, problems, job).write();
 }
 

@@ -59,43 +59,18 @@ TexelsPtr texels_with_cutoff(const Texture& texture, double cutoff, int most_sid
 
 template <typename Make>
 TexelsPtr TexelCache::find_or_make(Hash key, const Picture& picture, const Make& make) {
-    std::shared_ptr<CachedTexels> entry;
-    {
-        const std::lock_guard lock(mutex_);
-        std::shared_ptr<CachedTexels>& known = entries_[key];
-        if (known && known->texels) {
-            by_use_.splice(by_use_.begin(), by_use_, known->place);
-            return known->texels;
-        }
-        if (!known)
-            known = std::make_shared<CachedTexels>();
-        entry = known;
-    }
-    const std::lock_guard making(entry->making);
-    {
-        const std::lock_guard lock(mutex_);
-        if (entry->texels)
-            return entry->texels;
-    }
-    const bool large = static_cast<size_t>(std::max(0, picture.width)) *
-                           static_cast<size_t>(std::max(0, picture.height)) >
-                       kLargePicture;
-    std::unique_lock one(one_large_, std::defer_lock);
-    if (large)
-        one.lock();
-    TexelsPtr made = make();
-    const std::lock_guard lock(mutex_);
-    entry->texels = made;
-    by_use_.push_front(key);
-    entry->place = by_use_.begin();
-    bytes_ += made->rgba.size() * sizeof(float);
-    while (bytes_ > most_bytes_ && by_use_.size() > 1) {
-        const auto last = entries_.find(by_use_.back());
-        bytes_ -= last->second->texels->rgba.size() * sizeof(float);
-        entries_.erase(last);
-        by_use_.pop_back();
-    }
-    return made;
+    const auto make_alone = [&]() -> TexelsPtr {
+        const bool large = static_cast<size_t>(std::max(0, picture.width)) *
+                               static_cast<size_t>(std::max(0, picture.height)) >
+                           kLargePicture;
+        std::unique_lock one(one_large_, std::defer_lock);
+        if (large)
+            one.lock();
+        return make();
+    };
+    return texels_.of(key, make_alone, [](const DecodedTexels& texels) {
+        return texels.rgba.size() * sizeof(float);
+    });
 }
 
 TexelsPtr TexelCache::of(const Texture& texture) {
@@ -119,11 +94,6 @@ TexelsPtr TexelCache::at_least(const Texture& texture, double cutoff) {
                          .result();
     return find_or_make(key, picture,
                         [&] { return texels_with_cutoff(texture, cutoff, most_side_); });
-}
-
-size_t TexelCache::bytes() const {
-    const std::lock_guard lock(mutex_);
-    return bytes_;
 }
 
 }  // namespace lodestone::image

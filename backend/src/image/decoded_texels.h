@@ -2,14 +2,13 @@
 // DecodedTexels: decoded pictures, made small by averaging and shared, for measuring.
 #pragma once
 
+#include "base/recent_values.h"
 #include "image/texel_rows.h"
 
 #include <glm/vec4.hpp>
 
-#include <list>
 #include <memory>
 #include <mutex>
-#include <unordered_map>
 #include <vector>
 
 namespace lodestone::image {
@@ -42,7 +41,7 @@ TexelsPtr texels_with_cutoff(const Texture& texture, double cutoff, int most_sid
 class TexelCache {
 public:
     explicit TexelCache(int most_side = 256, size_t most_bytes = size_t{256} << 20u)
-        : most_side_(most_side), most_bytes_(most_bytes) {}
+        : most_side_(most_side), texels_(most_bytes) {}
 
     /// The texels of a texture; null where there is no picture or its bytes are not resident.
     /// Throws Error(BadFile).
@@ -50,24 +49,15 @@ public:
     TexelsPtr at_least(const Texture& texture, double cutoff);
 
     /// The bytes that the cache holds now.
-    size_t bytes() const;
+    size_t bytes() const { return texels_.bytes(); }
 
 private:
-    struct CachedTexels {
-        std::mutex making;
-        TexelsPtr texels;
-        std::list<Hash>::iterator place;
-    };
     template <typename Make>
     TexelsPtr find_or_make(Hash key, const Picture& picture, const Make& make);
 
     int most_side_;
-    size_t most_bytes_;
-    mutable std::mutex mutex_;
     std::mutex one_large_;  // pictures are decoded as floats: not several huge ones at a time
-    std::unordered_map<Hash, std::shared_ptr<CachedTexels>> entries_;
-    std::list<Hash> by_use_;  // entries that are made, the last used first
-    size_t bytes_ = 0;
+    RecentValues<DecodedTexels> texels_;
 };
 
 }  // namespace lodestone::image

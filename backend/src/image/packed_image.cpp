@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "image/image_codecs.h"
+#include "image/kept_pixels.h"
 
 #include <algorithm>
 #include <array>
@@ -126,7 +127,9 @@ std::string png_bytes(const PackedImage& image, PngEffort effort) {
 }
 
 PackedPtr packed(const Picture& picture) {
-    return std::make_shared<const PackedImage>(read_packed(picture.bytes, picture.name));
+    return kept_pixels(picture, [&picture] {
+        return std::make_shared<const PackedImage>(read_packed(picture.bytes, picture.name));
+    });
 }
 
 }  // namespace lodestone::image

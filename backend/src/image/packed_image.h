@@ -39,7 +39,8 @@ struct PackedImage {
 /// A decoded picture that is shared; it never changes once made.
 using PackedPtr = std::shared_ptr<const PackedImage>;
 
-/// The picture as its file holds it. Errors call it by its name. Throws Error(BadFile).
+/// The picture as its file holds it, decoded once while any KeptPixels lives. Errors call it by its
+/// name. Throws Error(BadFile).
 PackedPtr packed(const Picture& picture);
 /// Reads a picture from memory, as read() does and with its errors.
 PackedImage read_packed(std::string_view bytes, const std::string& name);

@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kFactsVersion = "LDSPIC01";
 /// The version of computed pictures: raised whenever operations or their PNG change.
 /// Law: part of every key.
-constexpr uint32_t kBakesVersion = 1;
+constexpr uint32_t kBakesVersion = 2;
 
 static_assert(std::is_trivially_copyable_v<PictureFacts> && sizeof(PictureFacts) == 40);
 

@@ -129,8 +129,8 @@ bool write_rows(PngWriter& writer, const PackedImage& image, PngEffort effort) {
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
     if (effort == PngEffort::Quick) {
-        png_set_compression_level(writer.png, 1);
-        png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+        png_set_compression_level(writer.png, 0);
+        png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
     }
     png_write_info(writer.png, writer.info);
     for (int y = 0; y < image.height; ++y)
