@@ -28,8 +28,11 @@ class Inherited(unittest.TestCase):
     def test_errors_are_the_one_number(self):
         for error in PRESETS:
             found = quality(error)
-            own = (found.shadows, found.reflections, found.lights)
-            self.assertEqual(own, (error,) * 3)
+            self.assertEqual((found.shadows, found.reflections), (error,) * 2)
+
+    def test_lamps_may_be_off_by_some_steps_from_a_pixel_on(self):
+        found = [quality(error).lights for error in (0.0, 0.5, 1.0, 4.0, 16.0, 64.0)]
+        self.assertEqual(found, [0.0, 0.5, 4.0, 8.0, 16.0, 64.0])
 
     def test_textures_stay_as_they_are_below_a_pixel(self):
         found = [quality(error).textures for error in (0.0, 0.5, 0.99, 1.0, 1.5, 8.0)]
@@ -55,6 +58,7 @@ class Inherited(unittest.TestCase):
             for key in ("area_samples", "indirect", "trace_depth", "antialias_depth"):
                 self.assertGreaterEqual(getattr(finer, key), getattr(coarser, key), key)
             self.assertLessEqual(finer.antialias_threshold, coarser.antialias_threshold)
+            self.assertLessEqual(finer.lights, coarser.lights)
             self.assertGreaterEqual(finer.bounce_rays, coarser.bounce_rays)
             self.assertLessEqual(finer.bounce_error, coarser.bounce_error)
 
@@ -101,7 +105,7 @@ class Overridden(unittest.TestCase):
 
     def test_every_override_reaches_what_povray_gets(self):
         plain = quality(1.0).povray()
-        own = {"textures": 4.0, "shadows": 4.0, "reflections": 4.0, "trace_depth": 9, "lights": 4.0}
+        own = {"textures": 4.0, "shadows": 4.0, "reflections": 4.0, "trace_depth": 9, "lights": 8.0}
         own |= {"area_samples": 3, "indirect": 0, "bounces": 2, "sky_occlusion": 16}
         changed = set()
         for key, value in own.items():

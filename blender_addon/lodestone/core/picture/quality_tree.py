@@ -60,6 +60,13 @@ def _textures(error: float) -> float:
     return error if error >= 1.0 else 0.0
 
 
+def _lights(error: float) -> float:
+    """At a pixel four steps at most: in pictures of nights a hundredth of the pixels is off by more
+    than three to five then, beside edges and blurred textures that are off by more, and a third of
+    the rays to lamps is spared. Larger errors are seen less as they grow, as with antialiasing."""
+    return error if error < 1.0 else max(4.0 * math.sqrt(error), error)
+
+
 def _halvings(error: float) -> int:
     """The number of times that 1 is doubled to reach an error, rounded up; 0 below."""
     return math.ceil(math.log2(error)) if error > 1.0 else 0
@@ -136,7 +143,7 @@ CONTROLS = (
         "How many mirrors or bodies of glass, one behind the other, a ray is followed through",
     ),
     Control(
-        "lights", "Lights", ROOT, _same, "px", 0.0, MOST_PIXELS,
+        "lights", "Lights", ROOT, _lights, "px", 0.0, MOST_PIXELS,
         "Many lamps become few, never through walls, as far as points of the picture change by "
         "about so many steps of 255. 0: no point loses more than a 1024th of its light",
     ),
