@@ -52,6 +52,13 @@ ArrivingShares from_area(const Light& area, const glm::dvec3& point, const glm::
     // Taste: these tell whether a lamp matters, and need not be exact.
     constexpr double kMostParts = 8;
     const glm::dvec3 middle = area.position - point;
+    const glm::dvec3 out = glm::normalize(area.direction);
+    // Most lamps of a front of windows are behind a point, or it faces away from all of them.
+    const auto reach = [&area](const glm::dvec3& way) {
+        return 0.5 * (std::abs(glm::dot(area.edge_u, way)) + std::abs(glm::dot(area.edge_v, way)));
+    };
+    if (reach(out) - glm::dot(middle, out) <= 0 || glm::dot(middle, normal) + reach(normal) <= 0)
+        return {};
     const double away = glm::length(middle);
     const glm::dvec3 to_middle = middle / std::max(away, 1e-300);
     const auto parts = static_cast<int>(std::clamp(
@@ -59,7 +66,6 @@ ArrivingShares from_area(const Light& area, const glm::dvec3& point, const glm::
     const double size =
         glm::length(glm::cross(area.edge_u, area.edge_v)) * (area.round ? kPi / 4 : 1);
     const double part_size = size / (parts * parts);
-    const glm::dvec3 out = glm::normalize(area.direction);
     ArrivingShares sum;
     int count = 0;
     for (int i = 0; i < parts * parts; ++i) {

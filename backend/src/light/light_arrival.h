@@ -26,7 +26,7 @@ struct LightArrival {
     glm::dvec3 head_on{0.0};  // if the surface faced the lamp's middle
 };
 /// That of a surface facing `normal` (unit). A lamp counts as if all of it were at its middle, an
-/// area that is near as a few parts. Of a point or a spot behind the surface nothing arrives.
+/// area that is near as a few parts. Of a lamp that is all behind the surface nothing arrives.
 LightArrival light_arrival(const Light& light, const glm::dvec3& point, const glm::dvec3& normal);
 
 /// The change of linear radiance that one step of an 8-bit display shows at this radiance.

@@ -11,8 +11,8 @@ from typing import Any, Protocol
 from . import process_session
 from .child_process import CANCELLED, Child
 
-_TICK_S = 0.05  # how often the clock, the memory and the signals are looked at
-_WALK_S = 0.25  # how often new processes are looked for
+_TICK_S = 0.1  # how often the clock, the memory and the signals are looked at
+_WALK_S = 0.5  # how often new processes are looked for
 _GRACE_S = 0.6  # everything has stopped a second after it was asked to
 
 
