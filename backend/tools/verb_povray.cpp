@@ -200,6 +200,9 @@ int run_povray(const CommandArguments& arguments) {
                                        {"lamp_rays", exported.lamp_rays},
                                        {"sky_lights", exported.sky_lights},
                                        {"soft_lamps", exported.soft_lamps},
+                                       {"text_bytes", exported.text_bytes},
+                                       {"texels", exported.texels},
+                                       {"covered", exported.covered},
                                        {"cut_triangles", exported.cut_triangles}}});
     report.push_back({"povray", Fields{{"parse_cpu_s", rendered.parse_cpu_s},
                                        {"trace_cpu_s", rendered.trace_cpu_s},

@@ -313,6 +313,7 @@ void IncludeFiles::add_to(ExportReport& report) const {
         if (!include.drawn)
             continue;
         report.bytes += include.bytes;
+        report.text_bytes += include.bytes;
         ++report.files;
         ++report.representations;
         report.cut_triangles += include.cut_triangles;
@@ -322,6 +323,7 @@ void IncludeFiles::add_to(ExportReport& report) const {
     }
     const PictureFolder::PictureTotals pictures = pictures_.totals();
     report.bytes += pictures.bytes;
+    report.texels += pictures.texels;
     report.files += pictures.files;
     report.written += pictures.written;
 }

@@ -125,6 +125,7 @@ private:
         lights.insert(lights.end(), model_.lights.begin(), model_.lights.end());
         needs_.find(model_, renderer_, cut_, view_, lights, job_);
         report_.left_out_bytes = needs_.bytes_left_out();
+        report_.covered = needs_.covered();
     }
 
     /// Gathered light shadows the sky by itself; POV-Ray ignores ambient then.

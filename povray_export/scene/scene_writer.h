@@ -48,9 +48,12 @@ struct ExportOptions {
 
 /// The result of an export.
 struct ExportReport {
-    uint64_t bytes = 0;    // bytes of all files of this scene
-    uint64_t files = 0;    // files of this scene, found again or written
-    uint64_t written = 0;  // files not found again
+    uint64_t bytes = 0;       // bytes of all files of this scene
+    uint64_t text_bytes = 0;  // of these, those of meshes
+    uint64_t texels = 0;      // of all its pictures
+    double covered = 1;       // the share of the picture where anything is seen, about
+    uint64_t files = 0;       // files of this scene, found again or written
+    uint64_t written = 0;     // files not found again
     uint64_t representations = 0;
     uint64_t occurrences = 0;     // objects in the scene
     uint64_t left_out = 0;        // chosen things that the picture neither shows nor has shadows of

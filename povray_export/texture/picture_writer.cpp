@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "image/picture_size.h"
 #include "povray_export/scene/povray_number.h"
 #include "povray_export/texture/pigment_picture.h"
 
@@ -302,6 +303,8 @@ PictureFolder::PictureTotals PictureFolder::totals() const {
         const uintmax_t bytes = std::filesystem::file_size(folder_ / name, error);
         ++totals.files;
         totals.bytes += error ? 0 : bytes;
+        const std::optional<image::PictureSize> size = image::picture_size(folder_ / name);
+        totals.texels += size ? size->texels() : 0;
         totals.written += written ? 1u : 0u;
     }
     return totals;

@@ -51,6 +51,7 @@ public:
     struct PictureTotals {
         uint64_t files = 0;
         uint64_t bytes = 0;
+        uint64_t texels = 0;
         uint64_t written = 0;
     };
     PictureTotals totals() const;  // call when no thread adds any more

@@ -71,6 +71,8 @@ TEST_F(PictureNeedsScenes, WhatIsNotNeededIsLeftOut) {
     EXPECT_EQ(needed.left_out, 21u);  // those far away, and the one below
     EXPECT_EQ(needed.occurrences, 4u);
     EXPECT_LT(5 * needed.bytes, full.bytes);
+    EXPECT_LT(5 * needed.text_bytes, full.text_bytes);
+    EXPECT_EQ(needed.covered, 1);  // by the ground
     const std::string scene = read_file(own_scratch() / "needed" / "scene.pov");
     EXPECT_EQ(scene.find("far"), std::string::npos);
     EXPECT_NE(scene.find("aside"), std::string::npos);
@@ -123,6 +125,22 @@ TEST_F(PictureNeedsScenes, SmallScenesOfManyLampsAreLookedThrough) {
     EXPECT_EQ(write("many").left_out, 1u);
     builder.model.lights.pop_back();
     EXPECT_EQ(write("few").left_out, 0u);
+}
+
+// What a picture of much sky takes was foretold as if all of it were covered.
+TEST_F(PictureNeedsScenes, TheShareOfThePictureThatIsCoveredIsTold) {
+    const double wide = glm::length(view.camera.right);
+    const double high = glm::length(view.camera.up);
+    ASSERT_TRUE(view.camera.orthographic);
+    Mesh plate = shapes::grid(40);
+    for (glm::vec3& at : plate.positions)
+        at = {wide * (at.x - 0.5) / 2, high * (at.y - 0.5) / 2, 0};
+    plate.uvs.clear();
+    plate.normals.clear();
+    builder.place(builder.mesh(plate), {}, "plate");
+    EXPECT_NEAR(write("quarter").covered, 0.25, 0.02);
+    view.modifiers.off_screen = OffScreen::Full;
+    EXPECT_EQ(write("unknown").covered, 1);
 }
 
 TEST_F(PictureNeedsScenes, CopiesShareTheTrianglesThatAnyNeeds) {

@@ -10,12 +10,13 @@ from types import SimpleNamespace
 
 import addon_path  # noqa: F401 - makes the add-on importable
 from lodestone.core.picture import cost_model, quality_tree
-from lodestone_native import Antialias, Camera, CostModel
+from lodestone_native import Antialias, Camera
 
-WORK = cost_model.Work(
-    1_000_000 * CostModel().triangle_bytes, 1_000_000, 640 * 360, 640, 360, 1, 1, 2
-)
-LAMPLESS = {"lamp_rays": 0.0, "sky_lights": 0, "soft_lamps": 0}
+WORK = cost_model.Work(95_000_000, 10_000_000, 640 * 360, 640, 360, 1, 1, 2)
+EXPORTED = {
+    "text_bytes": 1000, "texels": 10, "shadow_rays": 0.0, "lamp_rays": 0.0, "sky_lights": 0,
+    "soft_lamps": 0, "covered": 1.0,
+}  # fmt: skip
 CAMERA = Camera("C", False, (0, 0, 2), (0, 1, 0), (1, 0, 0), (0, 0, 0.5), 0.1, aperture=0.2)
 
 
@@ -25,13 +26,20 @@ class Cost(unittest.TestCase):
         self.assertEqual((found.parse_cpu_s, found.trace_cpu_s, found.wall_s), (0, 0, 0.6))
         self.assertAlmostEqual(found.peak_bytes / 1e6, 18 + 3.6864, places=6)
 
-    def test_a_million_triangles_are_read_as_was_measured(self):
+    def test_texts_and_pictures_are_read_and_kept_as_was_measured(self):
         found = cost_model.predict(WORK)
-        self.assertAlmostEqual(found.parse_cpu_s, 5.2)
-        # 1.65e-7 * 1e6^.2 * 1.3 each, 1 + .63 * 9 samples a pixel in units of 6.7 / 4
+        self.assertAlmostEqual(found.parse_cpu_s, 95 * 0.055 + 10 * 0.023)
+        kept = 18 + 3.6864 + 3.85 * 95 + 2.57 * 10
+        self.assertAlmostEqual(found.peak_bytes / 1e6, kept, places=5)
+        # 2.8e-9 * 1e8^.5 * 1.15 each, 1 + .63 * 9 samples a pixel in units of 6.7 / 4
         samples = (1 + 0.63 * 9) * 4 / 6.7
-        self.assertAlmostEqual(found.trace_cpu_s, 230400 * samples * 1.65e-7 * 1e6**0.2 * 1.3)
-        self.assertAlmostEqual(found.wall_s, 0.6 + 5.2 + found.trace_cpu_s / 2)
+        self.assertAlmostEqual(found.trace_cpu_s, 230400 * samples * 2.8e-5 * 1.15)
+        self.assertAlmostEqual(found.wall_s, 0.6 + found.parse_cpu_s + found.trace_cpu_s / 2)
+
+    def test_a_picture_of_much_sky_takes_less(self):
+        whole = cost_model.predict(WORK).trace_cpu_s
+        half = cost_model.predict(replace(WORK, covered=0.5)).trace_cpu_s
+        self.assertAlmostEqual(half, whole / 2)
 
     def test_bounces_are_expected_to_take_what_they_gather(self):
         direct = cost_model.predict(WORK).trace_cpu_s
@@ -60,8 +68,7 @@ class Cost(unittest.TestCase):
         sharp = cost_model.predict(WORK).trace_cpu_s
         blurred = cost_model.predict(replace(WORK, blurred=True)).trace_cpu_s
         self.assertAlmostEqual(blurred, sharp * 45 / WORK.samples)  # both at the usual antialiasing
-        summary = SimpleNamespace(bytes=1, triangles=1)
-        exported = SimpleNamespace(cut_triangles=0, shadow_rays=1.0, left_out_bytes=0, **LAMPLESS)
+        exported = SimpleNamespace(**EXPORTED)
         quality = quality_tree.quality(1.0)
         for camera, expected in (
             (CAMERA, True),
@@ -69,34 +76,23 @@ class Cost(unittest.TestCase):
             (replace(CAMERA, orthographic=True), False),
         ):
             view = SimpleNamespace(camera=camera, width=4, height=3, border=(0, 0, 0, 0))
-            work = cost_model.Work.of(summary, view, exported, Antialias.FINAL, 1, quality)
+            work = cost_model.Work.of(view, exported, Antialias.FINAL, 1, quality)
             self.assertEqual(work.blurred, expected)
 
-    def test_leaves_and_shadow_rays_were_forgotten(self):
+    def test_leaves_shadow_rays_and_textures_were_forgotten(self):
         view = SimpleNamespace(camera=CAMERA, width=4, height=3, border=(0, 0, 0, 0))
         quality = quality_tree.quality(1.0)
-        summary = SimpleNamespace(bytes=1000, triangles=10)
 
         def work(**more):
-            known = {"cut_triangles": 0, "shadow_rays": 0.0, "left_out_bytes": 0, **LAMPLESS}
-            exported = SimpleNamespace(**{**known, **more})
-            return cost_model.Work.of(summary, view, exported, Antialias.FINAL, 1, quality)
+            exported = SimpleNamespace(**{**EXPORTED, **more})
+            return cost_model.Work.of(view, exported, Antialias.FINAL, 1, quality)
 
-        leaves = work(cut_triangles=90)
-        self.assertEqual(leaves.triangles, 100)
-        self.assertEqual(leaves.bytes, 1000 + int(90 * CostModel().triangle_bytes))
-        ratio = cost_model.predict(work(shadow_rays=10.0)).trace_cpu_s
+        self.assertEqual((work().text_bytes, work().texels), (1000, 10))
+        grown = work(text_bytes=10_001_000).bytes - work().bytes
+        self.assertAlmostEqual(grown, 38_500_000)
+        self.assertAlmostEqual(work(texels=1_000_010).bytes - work().bytes, 2_570_000)
+        ratio = cost_model.predict(work(shadow_rays=20.0)).trace_cpu_s
         self.assertAlmostEqual(ratio / cost_model.predict(work()).trace_cpu_s, 4.0)
-
-    def test_memory_of_what_is_left_out_was_expected(self):
-        view = SimpleNamespace(camera=CAMERA, width=4, height=3, border=(0, 0, 0, 0))
-        summary = SimpleNamespace(bytes=1000, triangles=10)
-        for left_out, expected in ((0, 1000), (700, 300), (2000, 0)):
-            known = {"cut_triangles": 0, "shadow_rays": 0.0, **LAMPLESS}
-            exported = SimpleNamespace(**known, left_out_bytes=left_out)
-            quality = quality_tree.quality(1.0)
-            work = cost_model.Work.of(summary, view, exported, Antialias.FINAL, 1, quality)
-            self.assertEqual(work.bytes, expected)
 
     def test_the_same_picture_again_is_predicted_exactly(self):
         measured = SimpleNamespace(parse_cpu_s=9.0, trace_cpu_s=4.0, peak_bytes=400_000_000)

@@ -42,7 +42,7 @@ class SlowCauses(unittest.TestCase):
 
     def test_a_picture_of_many_parts_has_no_one_cause(self):
         self.assertEqual(codes(PLAIN), [])
-        self.assertEqual(codes(replace(LAMPS, bytes=10**11)), [])  # reading it takes longer
+        self.assertEqual(codes(replace(LAMPS, texels=10**12)), [])  # reading it takes longer
 
     def test_each_kind_of_work_is_told_by_its_own_code(self):
         for work, code in (

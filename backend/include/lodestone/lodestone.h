@@ -1180,6 +1180,9 @@ typedef struct lds_export_report {
     double lamp_rays;       /* of these, those to lamps */
     uint64_t sky_lights;    /* of these, one each to the lights that stand for the world's image */
     uint64_t soft_lamps;    /* lamps, and lights that stand for several, with soft shadows */
+    uint64_t text_bytes;    /* of `bytes`, those of meshes */
+    uint64_t texels;        /* of all pictures that the scene uses, as they are written */
+    double covered; /* the share of the picture where anything is seen, about; 1: not known */
 } lds_export_report;
 /* Writes scene.pov, scene.ini and r/<16 hex>.inc into folder, with the model's lights and world. */
 LDS_API lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_view* view,

@@ -171,6 +171,9 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         out.lamp_rays = report.lamp_rays;
         out.sky_lights = report.sky_lights;
         out.soft_lamps = report.soft_lamps;
+        out.text_bytes = report.text_bytes;
+        out.texels = report.texels;
+        out.covered = report.covered;
         out.cut_triangles = report.cut_triangles;
         hand_out(out_report, out, "out_report");
     });

@@ -86,6 +86,13 @@ bool next_row(JpegReader& reader, unsigned char* row) {
 
 }  // namespace
 
+PictureSize jpeg_size(std::string_view bytes, const std::string& name) {
+    JpegReader reader;
+    if (!start(reader, bytes))
+        fail(Status::BadFile, "'", name, "' is a broken JPEG: ", reader.complaint);
+    return {reader.jpeg.image_width, reader.jpeg.image_height};
+}
+
 PackedImage decode_jpeg(std::string_view bytes, const std::string& name) {
     JpegReader reader;
     if (!start(reader, bytes))

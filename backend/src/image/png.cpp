@@ -141,6 +141,14 @@ bool write_rows(PngWriter& writer, const PackedImage& image, PngEffort effort) {
 
 }  // namespace
 
+PictureSize png_size(std::string_view bytes, const std::string& name) {
+    PngReader reader(bytes);
+    if (!start(reader))
+        fail(Status::BadFile, "'", name, "' is a broken PNG: ", reader.complaint.text);
+    return {png_get_image_width(reader.png, reader.info),
+            png_get_image_height(reader.png, reader.info)};
+}
+
 PackedImage decode_png(std::string_view bytes, const std::string& name) {
     PngReader reader(bytes);
     if (!start(reader))

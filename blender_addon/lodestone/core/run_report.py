@@ -76,6 +76,9 @@ def export_part(report: native.records.ExportReport) -> dict[str, Any]:
         "lamp_rays": report.lamp_rays,
         "sky_lights": report.sky_lights,
         "soft_lamps": report.soft_lamps,
+        "text_bytes": report.text_bytes,
+        "texels": report.texels,
+        "covered": report.covered,
         "cut_triangles": report.cut_triangles,
     }
 

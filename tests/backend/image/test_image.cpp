@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "image/image.h"
+#include "image/picture_size.h"
 #include "scenes/damaged_files.h"
 #include "scenes/picture_files.h"
 #include "scratch.h"
@@ -118,6 +119,29 @@ TEST(Image, AllEightBitValuesSurviveWritingAndReading) {
     ASSERT_EQ(back.pixels.size(), image.pixels.size());
     for (size_t i = 0; i < back.pixels.size(); ++i)
         ASSERT_NEAR(back.pixels[i], image.pixels[i], 1e-6f) << i;
+}
+
+TEST(Image, TheHeaderTellsTheSize) {
+    const auto size_of = [](const std::string& bytes) {
+        write_file(scratch("header"), bytes);
+        return picture_size(scratch("header"));
+    };
+    for (const std::string& bytes :
+         {png(9, 5, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(45)),
+          jpeg(9, 5, 1, JCS_GRAYSCALE, 128), jpeg(9, 5, 3, JCS_RGB, 51)}) {
+        const auto size = size_of(bytes);
+        ASSERT_TRUE(size);
+        EXPECT_EQ(size->width, 9u);
+        EXPECT_EQ(size->height, 5u);
+        EXPECT_EQ(size->texels(), 45u);
+        for (const size_t cut : {0, 4, 20})
+            EXPECT_FALSE(size_of(bytes.substr(0, cut))) << cut;
+    }
+    EXPECT_FALSE(size_of("text"));
+    EXPECT_FALSE(picture_size(scratch("none.png")));
+    std::string vast = png(9, 5, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(45));
+    vast[16] = '\x7f';  // a width of 2^31, whose checksum is wrong
+    EXPECT_FALSE(size_of(vast));
 }
 
 TEST(Image, JpegGrayAndColor) {

@@ -109,6 +109,7 @@ public:
 
     std::vector<size_t> first() { return std::move(first_); }
     std::vector<uint8_t> needs() { return std::move(needs_); }
+    double covered() const { return static_cast<double>(met_) / SeenParts::rays(view_); }
 
 private:
     /// The needs of a triangle, which any thread may add to.
@@ -152,6 +153,7 @@ private:
                                     PcgRandom& random) {
         std::vector<SightCrossing> crossings;
         scene_.cross(walk, crossings);
+        met_ += !crossings.empty() && walk.way == 0 ? 1 : 0;  // from the eye
         for (const SightCrossing& at : crossings) {
             note(at.drawn, at.triangle, kSeen);
             if (at.bends)
@@ -340,7 +342,7 @@ private:
         const int aims = aims_of(kAims, needs_look);
         parallel_for(drawn_.size(), [&](size_t i) {
             const auto drawn = static_cast<uint32_t>(i);
-            if ((drawn_[i].hidden & kCameraRays) != 0 || !finite(drawn_[i]))
+            if ((drawn_[i].hidden & kCameraRays) != 0 || !drawn_[i].world.finite())
                 return;
             job_.check();
             const ray::FlushDenormals fast;
@@ -455,8 +457,6 @@ private:
         }
     }
 
-    static bool finite(const DrawnThing& thing) { return thing.world.finite(); }
-
     std::span<const DrawnThing> drawn_;
     const View& view_;
     const Job& job_;
@@ -472,6 +472,7 @@ private:
     std::vector<LeastSize> shadow_pixels_;  // by drawn thing: of a pixel where its shadow is seen
     std::vector<std::optional<geometry::PartTree>> trees_;  // by shape
     std::atomic<bool> bends_{false};
+    std::atomic<size_t> met_{0};  // rays through the picture that met anything
 };
 
 }  // namespace
@@ -488,6 +489,7 @@ SeenParts::SeenParts(const Model& model, const RendererSurfaces& renderer,
     known_ = search.run();
     first_ = search.first();
     needs_ = search.needs();
+    covered_ = std::min(1.0, search.covered());
     all_.resize(drawn.size(), 0);
     for (size_t i = 0; i < drawn.size(); ++i) {
         for (const uint8_t need : triangles(i))

@@ -40,11 +40,15 @@ public:
         return std::span(needs_).subspan(first_[drawn], first_[drawn + 1] - first_[drawn]);
     }
 
+    /// The share of the picture where anything is seen, about.
+    double covered() const { return covered_; }
+
     /// The rays through a picture.
     static double rays(const View& view);
 
 private:
     bool known_ = true;
+    double covered_ = 1;
     std::vector<uint8_t> all_;    // by drawn thing
     std::vector<size_t> first_;   // of needs_, by drawn thing; one more at the end
     std::vector<uint8_t> needs_;  // by triangle

@@ -2,17 +2,18 @@
 """The time and the memory that a picture will take, told before it is rendered and corrected by the
 one before.
 
-POV-Ray reads its memory in a time that the library knows; a sample takes longer with the fifth
-root of the triangles and with each shadow ray (measured on one machine; cost.json beside the
-levels keeps by how much the last picture differed). Bounces gather light by rays at places as
-dense as their error asks for, and again from what these meet.
+POV-Ray reads the texts and pictures that an export wrote, and keeps them: both take as long and as
+much as they are large. A sample takes longer with the root of the texts and with each shadow ray.
+Measured on one machine, in tracks of SuperTuxKart and generated nights; cost.json beside the levels
+keeps by how much the last picture differed. Not known before is how often rays go on through masks
+that are not cut out: where dead trees fill the picture it takes three times as long. Bounces gather
+light by rays at places as dense as their error asks for, and again from what these meet.
 """
 
 import json
 import math
 import os
 from dataclasses import asdict, dataclass, fields, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +21,13 @@ from ..native import lodestone_native as native
 from .quality_tree import Quality
 
 FILE = "cost.json"
-_SAMPLE_S = 1.65e-7
-# A shadow ray beside a sample, in ravenbridge_mansion with suns of 1, 2 x 2, 3 x 3, 5 x 5 rays
-_SHADOW_SHARE = 0.3
+_MODEL = 2  # ratios to what another model foretold say nothing
+# To read a byte of text and a texel; what they take in memory
+_TEXT_S, _TEXEL_S = 5.5e-8, 2.3e-8
+_TEXT_BYTES, _TEXEL_BYTES = 3.85, 2.57
+# A sample takes this, times the root of the texts in bytes, of which the first make no difference
+_SAMPLE_S, _FEWEST_TEXT = 2.8e-9, 5e6
+_SHADOW_SHARE = 0.15  # a shadow ray beside a sample
 _GATHERED = 0.1  # places a pixel where light is gathered, at an error of 1
 # Of a pixel's n x n more samples this share is taken in the mean, and the unit below is for 6.7 of
 # them; measured in zengarden and ravenbridge_mansion (0.7) and the sample street (0.47)
@@ -70,11 +75,10 @@ class Ratios:
 
 @dataclass(frozen=True)
 class Work:
-    """The work of a picture: bytes and triangles as the cut counts them, less the bytes that the
-    picture does not need; `pixels` are those drawn."""
+    """The work of a picture; `pixels` are those drawn."""
 
-    bytes: int
-    triangles: int
+    text_bytes: int  # of the files of meshes
+    texels: int  # of all pictures
     pixels: int
     width: int
     height: int
@@ -88,6 +92,12 @@ class Work:
     lamp_rays: float = 0.0  # those of shadow_rays that go to lamps
     sky_lights: int = 0  # those to the world's image, one a light
     soft_lamps: int = 0
+    covered: float = 1.0  # the share of the picture where anything is seen
+
+    @property
+    def bytes(self) -> float:
+        """What POV-Ray keeps of it."""
+        return _TEXT_BYTES * self.text_bytes + _TEXEL_BYTES * self.texels
 
     @property
     def samples(self) -> float:
@@ -103,28 +113,23 @@ class Work:
     @classmethod
     def of(
         cls,
-        summary: native.records.CutSummary,
         view: native.View,
         exported: native.records.ExportReport,
         antialias: int,
         threads: int,
         quality: Quality,
     ) -> "Work":
-        """The work of a cut that was exported. `quality`: what shades it."""
+        """The work of a view that was exported. `quality`: what shades it."""
         width, height = view.border[2:] if view.border[2] else (view.width, view.height)
         threads = threads or len(os.sched_getaffinity(0))
         whole = (view.width, view.height)
-        drawn = width * height
-        masks = exported.cut_triangles
-        grown = int(masks * native.CostModel().triangle_bytes)
-        written = max(0, summary.bytes - exported.left_out_bytes)
-        sums = (written + grown, summary.triangles + masks, drawn)
+        sums = (exported.text_bytes, exported.texels, width * height)
         rays = gathering(quality.bounces, quality.bounce_rays, quality.bounce_error)
         blurred = view.camera.aperture > 0.0 and not view.camera.orthographic
         return cls(
             *sums, *whole, exported.shadow_rays, antialias, threads, rays, blurred,
             quality.antialias_depth, quality.pixel_error <= 0.0, exported.lamp_rays,
-            exported.sky_lights, exported.soft_lamps,
+            exported.sky_lights, exported.soft_lamps, exported.covered,
         )  # fmt: skip
 
 
@@ -133,16 +138,12 @@ def gathering(bounces: int, rays: int, error: float) -> float:
     return _GATHERED / error**2 * rays * bounces
 
 
-@lru_cache(maxsize=None)
-def _parse_s_per_byte() -> float:
-    costs = native.CostModel()
-    return float(costs.parse_triangle_s / costs.triangle_bytes)
-
-
 def predict(work: Work, ratios: Ratios = Ratios()) -> Prediction:
-    parse = work.bytes * _parse_s_per_byte() * ratios.parse
-    each = _SAMPLE_S * max(1, work.triangles) ** 0.2 * (1.0 + _SHADOW_SHARE * work.shadow_rays)
-    trace = work.pixels * (work.samples + work.gathering) * each * ratios.of_trace(work)
+    parse = (_TEXT_S * work.text_bytes + _TEXEL_S * work.texels) * ratios.parse
+    each = _SAMPLE_S * math.sqrt(_FEWEST_TEXT + work.text_bytes)
+    each *= 1.0 + _SHADOW_SHARE * work.shadow_rays
+    drawn = work.covered * work.pixels * (work.samples + work.gathering)
+    trace = drawn * each * ratios.of_trace(work)
     wall = _START_S + parse + trace / max(1, work.threads)
     kept = _PIXEL_BYTES * work.width * work.height
     peak = _EMPTY_BYTES + kept + work.bytes * ratios.memory
@@ -153,7 +154,7 @@ def learn(work: Work, measured: native.records.PovrayReport, before: Ratios) -> 
     """The ratios that a finished picture teaches; `measured` has parse_cpu_s, trace_cpu_s and
     peak_bytes."""
     plain = predict(work)
-    empty = predict(Work(0, 1, 0, work.width, work.height, 0, work.antialias, 1)).peak_bytes
+    empty = predict(Work(0, 0, 0, work.width, work.height, 0, work.antialias, 1)).peak_bytes
 
     def ratio(found: float, expected: float, least: float, old: float) -> float:
         if found < least or not expected > 0.0 or not math.isfinite(found):
@@ -200,7 +201,7 @@ class StoreCosts:
         self._last[str(self._store)] = ratios
         temporary = self._store / f".cost-{os.getpid()}.json"
         try:
-            temporary.write_text(json.dumps(asdict(ratios)), "utf-8")
+            temporary.write_text(json.dumps({"model": _MODEL, **asdict(ratios)}), "utf-8")
             os.replace(temporary, self._store / FILE)
         except OSError:
             try:
@@ -216,9 +217,11 @@ def _from_file(path: Path) -> Ratios:
         value = json.loads(path.read_text("utf-8"))
     except (OSError, ValueError):
         return Ratios()
+    if not isinstance(value, dict) or value.get("model") != _MODEL:
+        return Ratios()
     found = {}
     for field in fields(Ratios):
-        ratio = value.get(field.name) if isinstance(value, dict) else None
+        ratio = value.get(field.name)
         if isinstance(ratio, (int, float)) and 1.0 / _MOST <= ratio <= _MOST:
             found[field.name] = float(ratio)
     return Ratios(**found)
