@@ -3,7 +3,7 @@
 
 #include "base/color.h"
 #include "base/files.h"
-#include "image/image_codecs.h"
+#include "image/codec/image_codecs.h"
 #include "image/texel_rows.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "base/files.h"
-#include "image/image_codecs.h"
+#include "image/codec/image_codecs.h"
 #include "image/kept_pixels.h"
 
 #include <algorithm>

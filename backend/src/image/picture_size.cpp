@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
-#include "image/image_codecs.h"
+#include "image/codec/image_codecs.h"
 
 #include <string>
 #include <string_view>

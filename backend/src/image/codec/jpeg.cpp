@@ -3,7 +3,7 @@
 // jumps out. Between setjmp and the last libjpeg call there are only plain values; memory is owned
 // by the caller's frame.
 #include "base/error.h"
-#include "image/image_codecs.h"
+#include "image/codec/image_codecs.h"
 
 #include <jpeglib.h>
 

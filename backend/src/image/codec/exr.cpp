@@ -4,7 +4,7 @@
 // (OpenEXR's own limits are global and would hold for our host program, too). Where OpenEXR reads a
 // header otherwise than we do (it takes an attribute's size from its type), the file is refused.
 #include "base/error.h"
-#include "image/image_codecs.h"
+#include "image/codec/image_codecs.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

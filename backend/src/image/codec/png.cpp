@@ -3,7 +3,7 @@
 // the last libpng call there are only plain values; everything that owns memory lives in the
 // caller's frame.
 #include "base/error.h"
-#include "image/image_codecs.h"
+#include "image/codec/image_codecs.h"
 
 #include <png.h>
 
