@@ -129,7 +129,7 @@ class SlowPictures(unittest.TestCase):
         lamps = Problem("", INFO, "slow_lamps", "25 lamps: about 90 % of the time")
         other = Problem("", INFO, "slow_weather", "Nothing helps against it")
         session.checks[self.scene.name] = Check((lamps, other), {})
-        remedies = {"slow_lamps": Remedy("lights", 1.0, 4.0)}
+        remedies = {"slow_lamps": Remedy("lights", 4.0, 16.0)}
         session.renders[self.scene.name] = LastRender(0, 0, {}, 0.0, "", remedies=remedies)
         self.addCleanup(session.renders.pop, self.scene.name, None)
 
@@ -142,7 +142,7 @@ class SlowPictures(unittest.TestCase):
     def test_faster_sets_the_control_once_a_picture(self):
         self.assertIn("lodestone.draw_faster", self.buttons())
         self.assertEqual(bpy.ops.lodestone.draw_faster(code="slow_lamps"), {"FINISHED"})
-        self.assertEqual(quality_settings.overrides(self.settings), {"lights": 4.0})
+        self.assertEqual(quality_settings.overrides(self.settings), {"lights": 16.0})
         self.assertNotIn("lodestone.draw_faster", self.buttons())
         self.assertEqual(bpy.ops.lodestone.draw_faster(code="slow_lamps"), {"CANCELLED"})
         bpy.ops.lodestone.inherit_control(key="lights")
@@ -181,6 +181,7 @@ class Files(unittest.TestCase):
         return scene.read_text(), scene.with_name("scene.ini").read_text()
 
     def test_overrides_reach_the_scene_file(self):
+        self.settings.lights = 1.0
         scene, ini = self.written()
         self.assertIn("max_trace_level 5 ", scene)
         self.assertIn(",9,9 adaptive", scene)

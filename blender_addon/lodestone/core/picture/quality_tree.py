@@ -64,7 +64,7 @@ def _lights(error: float) -> float:
     """At a pixel four steps at most: in pictures of nights a hundredth of the pixels is off by more
     than three to five then, beside edges and blurred textures that are off by more, and a third of
     the rays to lamps is spared. Larger errors are seen less as they grow, as with antialiasing."""
-    return error if error < 1.0 else max(4.0 * math.sqrt(error), error)
+    return error if error < 1.0 else max(round(4.0 * math.sqrt(error)), error)
 
 
 def _halvings(error: float) -> int:
