@@ -91,6 +91,7 @@ WrittenSky write_sky(const World& world, const SkySampling& sampling,
     }
     sky.file = "i/" + hex16(picture.hash) + '.' + suffix_of(picture.format);
     sky.bytes = picture.bytes.size();
+    sky.texels = static_cast<uint64_t>(picture.width) * static_cast<uint64_t>(picture.height);
     const std::filesystem::path path = folder / sky.file;
     std::error_code error;
     if (std::filesystem::file_size(path, error) != picture.bytes.size() || error) {

@@ -25,6 +25,7 @@ struct WrittenSky {
     glm::dvec3 strength{1.0};   // factor on what the picture shows
     std::string file;           // an environment's file, relative to the scene; "" without
     uint64_t bytes = 0;         // size of that file
+    uint64_t texels = 0;        // of its picture
     bool written = false;       // false: the file was there already
 };
 

@@ -18,9 +18,6 @@ CostModel povray_costs() {
     costs.occurrence_s = 2e-5;
     costs.pixel_s = 1e-5;
     costs.start_s = 0.2;
-    // Fitted: to the reading of whole scenes with their textures, which pictures of one process
-    // correct by the one before.
-    costs.parse_triangle_s = 5.2e-6;
     return costs;
 }
 

@@ -83,10 +83,13 @@ public:
         name_problems();
         if (!sky_.file.empty()) {
             report_.bytes += sky_.bytes;
+            report_.texels += sky_.texels;
             ++report_.files;
             report_.written += sky_.written ? 1u : 0u;
         }
-        write_text("scene.pov", scene());
+        const std::string text = scene();
+        write_text("scene.pov", text);
+        report_.text_bytes += text.size();
         write_text("scene.ini", render_settings(view_, options_.margin, shading_,
                                                 options_.antialiasing, transparent()));
         ExportReport report = report_;

@@ -49,7 +49,7 @@ struct ExportOptions {
 /// The result of an export.
 struct ExportReport {
     uint64_t bytes = 0;       // bytes of all files of this scene
-    uint64_t text_bytes = 0;  // of these, those of meshes
+    uint64_t text_bytes = 0;  // of these, those of texts: meshes and scene.pov
     uint64_t texels = 0;      // of all its pictures
     double covered = 1;       // the share of the picture where anything is seen, about
     uint64_t files = 0;       // files of this scene, found again or written

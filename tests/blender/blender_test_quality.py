@@ -129,7 +129,7 @@ class SlowPictures(unittest.TestCase):
         lamps = Problem("", INFO, "slow_lamps", "25 lamps: about 90 % of the time")
         other = Problem("", INFO, "slow_weather", "Nothing helps against it")
         session.checks[self.scene.name] = Check((lamps, other), {})
-        remedies = {"slow_lamps": Remedy("lights", 4.0, 16.0)}
+        remedies = {"slow_lamps": Remedy("lights", 1.0, 16.0)}
         session.renders[self.scene.name] = LastRender(0, 0, {}, 0.0, "", remedies=remedies)
         self.addCleanup(session.renders.pop, self.scene.name, None)
 

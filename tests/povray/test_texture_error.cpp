@@ -45,10 +45,15 @@ int written(const Texture& texture, const Mesh& mesh, double texture_error, doub
     view.camera.up = {0, metres, 0};
     Problems problems;
     std::filesystem::remove_all(options.folder);
-    scenes::write(model, view, options, problems);
+    const ExportReport first = scenes::write(model, view, options, problems);
     int width = 0;
     for (const auto& entry : std::filesystem::directory_iterator(options.folder / "i"))
         width = image::read(entry.path()).width;
+    // Told by the header, of files that are found again, too.
+    const auto texels = static_cast<uint64_t>(width) * static_cast<uint64_t>(width);
+    EXPECT_EQ(first.texels, texels);
+    EXPECT_EQ(scenes::write(model, view, options, problems).texels, texels);
+    EXPECT_LT(first.text_bytes, first.bytes);
     return width;
 }
 

@@ -14,9 +14,16 @@ from lodestone_native import Antialias, Camera
 
 WORK = cost_model.Work(95_000_000, 10_000_000, 640 * 360, 640, 360, 1, 1, 2)
 EXPORTED = {
-    "text_bytes": 1000, "texels": 10, "shadow_rays": 0.0, "lamp_rays": 0.0, "sky_lights": 0,
-    "soft_lamps": 0, "covered": 1.0,
-}  # fmt: skip
+    "text_bytes": 1000,
+    "texels": 10,
+    "shadow_rays": 0.0,
+    "lamp_rays": 0.0,
+    "sky_lights": 0,
+    "soft_lamps": 0,
+    "covered": 0.5,
+    "left_out": 1,
+}
+SUMMARY = SimpleNamespace(occurrences=4)  # fmt: skip
 CAMERA = Camera("C", False, (0, 0, 2), (0, 1, 0), (1, 0, 0), (0, 0, 0.5), 0.1, aperture=0.2)
 
 
@@ -39,7 +46,15 @@ class Cost(unittest.TestCase):
     def test_a_picture_of_much_sky_takes_less(self):
         whole = cost_model.predict(WORK).trace_cpu_s
         half = cost_model.predict(replace(WORK, covered=0.5)).trace_cpu_s
-        self.assertAlmostEqual(half, whole / 2)
+        self.assertAlmostEqual(half, 0.55 * whole)  # what meets nothing takes a tenth
+
+    def test_the_covered_share_is_that_of_the_whole_picture(self):
+        quality = quality_tree.quality(1.0)
+        exported = SimpleNamespace(**EXPORTED)
+        for border, expected in (((0, 0, 0, 0), 0.5), ((1, 1, 2, 2), 1.0)):
+            view = SimpleNamespace(camera=CAMERA, width=4, height=3, border=border)
+            work = cost_model.Work.of(SUMMARY, view, exported, Antialias.FINAL, 1, quality)
+            self.assertEqual((work.covered, work.objects), (expected, 3))
 
     def test_bounces_are_expected_to_take_what_they_gather(self):
         direct = cost_model.predict(WORK).trace_cpu_s
@@ -76,7 +91,7 @@ class Cost(unittest.TestCase):
             (replace(CAMERA, orthographic=True), False),
         ):
             view = SimpleNamespace(camera=camera, width=4, height=3, border=(0, 0, 0, 0))
-            work = cost_model.Work.of(view, exported, Antialias.FINAL, 1, quality)
+            work = cost_model.Work.of(SUMMARY, view, exported, Antialias.FINAL, 1, quality)
             self.assertEqual(work.blurred, expected)
 
     def test_leaves_shadow_rays_and_textures_were_forgotten(self):
@@ -85,7 +100,7 @@ class Cost(unittest.TestCase):
 
         def work(**more):
             exported = SimpleNamespace(**{**EXPORTED, **more})
-            return cost_model.Work.of(view, exported, Antialias.FINAL, 1, quality)
+            return cost_model.Work.of(SUMMARY, view, exported, Antialias.FINAL, 1, quality)
 
         self.assertEqual((work().text_bytes, work().texels), (1000, 10))
         grown = work(text_bytes=10_001_000).bytes - work().bytes

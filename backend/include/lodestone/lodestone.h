@@ -791,7 +791,6 @@ typedef struct lds_cost_model {
     uint64_t triangle_bytes;   /* bytes of a mesh's triangle, however often it is drawn */
     uint64_t primitive_bytes;  /* bytes of a box, an ellipsoid, each solid of a composite */
     uint64_t occurrence_bytes; /* bytes of each occurrence, whatever it draws */
-    double parse_triangle_s;   /* CPU seconds to read a triangle */
 } lds_cost_model;
 LDS_API lds_status lds_cost_model_default(lds_cost_model* costs);
 
@@ -1180,7 +1179,7 @@ typedef struct lds_export_report {
     double lamp_rays;       /* of these, those to lamps */
     uint64_t sky_lights;    /* of these, one each to the lights that stand for the world's image */
     uint64_t soft_lamps;    /* lamps, and lights that stand for several, with soft shadows */
-    uint64_t text_bytes;    /* of `bytes`, those of meshes */
+    uint64_t text_bytes;    /* of `bytes`, those of texts: meshes and scene.pov */
     uint64_t texels;        /* of all pictures that the scene uses, as they are written */
     double covered; /* the share of the picture where anything is seen, about; 1: not known */
 } lds_export_report;

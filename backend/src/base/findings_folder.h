@@ -33,7 +33,7 @@ public:
     void add(Hash key, std::string_view bytes);
 
     /// Taste: a larger value keeps the pictures of larger scenes and of more cameras, on disk.
-    static constexpr uint64_t kMostBytes = uint64_t{128} << 20u;
+    static constexpr uint64_t kMostBytes = uint64_t{256} << 20u;
 
 private:
     struct FolderFile {

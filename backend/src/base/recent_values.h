@@ -21,7 +21,8 @@ public:
     explicit RecentValues(size_t most_bytes) : most_bytes_(most_bytes) {}
 
     /// The value of a key; where there is none, what `make()` returns (a shared_ptr, not null) is
-    /// kept, as `bytes_of(value)` bytes. What `make()` throws is thrown, and nothing is kept.
+    /// kept, as `bytes_of(value)` bytes. What `make()` throws is thrown, and no
+    /// value is kept.
     template <typename Make, typename BytesOf>
     std::shared_ptr<const T> of(Hash key, const Make& make, const BytesOf& bytes_of) {
         std::shared_ptr<RecentValue> entry;
@@ -44,15 +45,17 @@ public:
         }
         std::shared_ptr<const T> made = make();
         const size_t bytes = bytes_of(*made);
+        std::list<std::shared_ptr<RecentValue>> forgotten;  // freed without the lock
         const std::lock_guard lock(mutex_);
-        entry->value = made;
-        entry->bytes = bytes;
         by_use_.push_front(key);
         entry->place = by_use_.begin();
+        entry->bytes = bytes;
+        entry->value = made;
         bytes_ += bytes;
         while (bytes_ > most_bytes_ && by_use_.size() > 1) {
             const auto last = entries_.find(by_use_.back());
             bytes_ -= last->second->bytes;
+            forgotten.push_back(std::move(last->second));
             entries_.erase(last);
             by_use_.pop_back();
         }

@@ -79,7 +79,6 @@ lds_status lds_cost_model_default(lds_cost_model* costs) {
         out.triangle_bytes = known.triangle_bytes;
         out.primitive_bytes = known.primitive_bytes;
         out.occurrence_bytes = known.occurrence_bytes;
-        out.parse_triangle_s = known.parse_triangle_s;
         hand_out(costs, out, "costs");
     });
 }

@@ -50,7 +50,7 @@ void write_png(const std::filesystem::path& path, const Image& image);
 /// The thing that is spared when a PNG file is made.
 enum class PngEffort : uint8_t {
     Small,  // bytes: for files that are kept
-    Quick,  // time: nothing is compressed, for what is read soon and forgotten
+    Quick,  // time: nothing is compressed, for what is read soon
 };
 /// The bytes of such a PNG file. Throws Error(InvalidArgument).
 std::string png_bytes(const Image& image, PngEffort effort = PngEffort::Small);

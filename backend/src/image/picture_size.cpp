@@ -2,26 +2,39 @@
 #include "image/picture_size.h"
 
 #include "base/error.h"
-#include "base/files.h"
 #include "image/codec/image_codecs.h"
 
+#include <algorithm>
+#include <fstream>
 #include <string>
 #include <string_view>
 
 namespace lodestone::image {
+namespace {
+
+/// The size that these first bytes of a file tell. Throws Error(BadFile).
+PictureSize size_of(const std::string& bytes, const std::string& name) {
+    using namespace std::string_view_literals;
+    if (bytes.starts_with("\x89PNG\r\n\x1a\n"sv))
+        return png_size(bytes, name);
+    if (bytes.starts_with("\xff\xd8\xff"sv))
+        return jpeg_size(bytes, name);
+    return {};
+}
+
+}  // namespace
 
 std::optional<PictureSize> picture_size(const std::filesystem::path& path) {
-    using namespace std::string_view_literals;
-    // The largest file that is looked at.
-    // Law: POV-Ray keeps more bytes of a picture, and files of one are no larger than 1 GiB.
-    constexpr uint64_t kMostBytes = uint64_t{1} << 30u;
+    // The first bytes of a file, beyond which its size is not looked for.
+    // Taste: profiles and previews before it are smaller; a larger value reads more of each file.
+    constexpr size_t kBeginning = size_t{1} << 18u;
+    std::string bytes(kBeginning, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<size_t>(std::max<std::streamsize>(file.gcount(), 0)));
     PictureSize size;
     try {
-        const std::string bytes = read_file(path, kMostBytes);
-        if (bytes.starts_with("\x89PNG\r\n\x1a\n"sv))
-            size = png_size(bytes, path.string());
-        else if (bytes.starts_with("\xff\xd8\xff"sv))
-            size = jpeg_size(bytes, path.string());
+        size = size_of(bytes, path.string());
     } catch (const Error&) {
         return {};
     }

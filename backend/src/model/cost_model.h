@@ -24,8 +24,6 @@ struct CostModel {
     /// The CPU seconds of a pixel with a few lights, and of a picture of nothing.
     double pixel_s = 0;
     double start_s = 0;
-    /// The CPU seconds to read a triangle, as pictures are predicted before they are rendered.
-    double parse_triangle_s = 0;
 };
 
 }  // namespace lodestone

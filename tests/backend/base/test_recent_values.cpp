@@ -4,9 +4,11 @@
 #include "base/recent_values.h"
 
 #include <atomic>
+#include <chrono>
 #include <gtest/gtest.h>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace lodestone {
@@ -84,6 +86,7 @@ TEST(RecentValues, ThreadsThatWantOneValueGetTheSame) {
             i % 4,
             [&made] {
                 ++made;
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));  // others come meanwhile
                 return std::make_shared<const std::string>(10, 'x');
             },
             size_of);

@@ -139,9 +139,11 @@ TEST(Image, TheHeaderTellsTheSize) {
     }
     EXPECT_FALSE(size_of("text"));
     EXPECT_FALSE(picture_size(scratch("none.png")));
-    std::string vast = png(9, 5, 8, PNG_COLOR_TYPE_GRAY, std::vector<unsigned char>(45));
-    vast[16] = '\x7f';  // a width of 2^31, whose checksum is wrong
-    EXPECT_FALSE(size_of(vast));
+    std::string vast = jpeg(9, 5, 1, JCS_GRAYSCALE, 128);
+    const size_t frame = vast.find("\xff\xc0");  // of baseline JPEG: length, bits, height, width
+    ASSERT_NE(frame, std::string::npos);
+    vast.replace(frame + 5, 4, 4, '\xfd');
+    EXPECT_FALSE(size_of(vast)) << "64,000 x 64,000 pixels";
 }
 
 TEST(Image, JpegGrayAndColor) {

@@ -62,6 +62,12 @@ TEST(LightArrival, WhatIsBesideAPanelIsLitByItsNearParts) {
         EXPECT_GT(found, 0.5 * expected) << depth;
         EXPECT_LT(found, 2 * expected) << depth;
     }
+    // The panel's middle is behind, and a part of it in front.
+    const glm::dvec3 aside(0.1, 0.3, 0);
+    const double part = exact(panel(), aside, {0, 1, 0});
+    EXPECT_GT(part, 0);
+    EXPECT_NEAR(light_arrival(panel(), aside, {0, 1, 0}).surface.x, part, 0.5 * part);
+    EXPECT_EQ(light_arrival(panel(), {0.1, 0.6, 0}, {0, 1, 0}).surface.x, 0);
     EXPECT_EQ(light_arrival(panel(), {-0.1, 0, 0}, {1, 0, 0}).surface.x, 0);
     EXPECT_GE(light_arrival(panel(), {0, 0, 0}, {1, 0, 0}).surface.x, 0);
 }

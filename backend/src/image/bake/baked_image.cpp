@@ -199,7 +199,7 @@ PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Te
                         space == ColorSpace::Linear ? byte_of(texels[c]) : srgb_byte_of(texels[c]);
             }
         });
-        // In half of the time and a fifth larger: it is often made anew when a scene is read.
+        // Not compressed: it is often made anew when a scene is read, and decoded soon.
         made = make_picture(image, PngEffort::Quick, space, name);
         remembered.add(key, made);
         keep_bake(key, made->bytes);

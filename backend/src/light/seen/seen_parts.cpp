@@ -38,9 +38,7 @@ constexpr size_t kMostAims = 1 << 21;  // Taste: some seconds
 // The pixels of a part, an eighth of which is seen, that rays through each miss in one of e cases.
 // Law: one ray is expected to meet it.
 constexpr double kOftenMissed = 8;
-// The mirrors in a row that a ray follows.
-// Taste: more find things deeper in mirrors.
-constexpr int kMostMirrors = 4;
+constexpr int kMostMirrors = 4;  // Taste: more in a row find things deeper in mirrors
 // The tests of places and of things against lights, beyond which everything throws shadows.
 // Taste: a second or so.
 constexpr double kMostPlaceTests = 1e8;
@@ -153,7 +151,8 @@ private:
                                     PcgRandom& random) {
         std::vector<SightCrossing> crossings;
         scene_.cross(walk, crossings);
-        met_ += !crossings.empty() && walk.way == 0 ? 1 : 0;  // from the eye
+        if (!crossings.empty() && walk.way == 0)  // from the eye
+            met_.fetch_add(1, std::memory_order_relaxed);
         for (const SightCrossing& at : crossings) {
             note(at.drawn, at.triangle, kSeen);
             if (at.bends)

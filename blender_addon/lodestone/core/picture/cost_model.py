@@ -28,6 +28,8 @@ _TEXT_BYTES, _TEXEL_BYTES = 3.85, 2.57
 # A sample takes this, times the root of the texts in bytes, of which the first make no difference
 _SAMPLE_S, _FEWEST_TEXT = 2.8e-9, 5e6
 _SHADOW_SHARE = 0.15  # a shadow ray beside a sample
+_SKY_SHARE = 0.1  # a sample that meets nothing beside one that does
+_OBJECT_BYTES = 760  # of an object, besides what its line in scene.pov counts as
 _GATHERED = 0.1  # places a pixel where light is gathered, at an error of 1
 # Of a pixel's n x n more samples this share is taken in the mean, and the unit below is for 6.7 of
 # them; measured in zengarden and ravenbridge_mansion (0.7) and the sample street (0.47)
@@ -93,11 +95,13 @@ class Work:
     sky_lights: int = 0  # those to the world's image, one a light
     soft_lamps: int = 0
     covered: float = 1.0  # the share of the picture where anything is seen
+    objects: int = 0
 
     @property
     def bytes(self) -> float:
         """What POV-Ray keeps of it."""
-        return _TEXT_BYTES * self.text_bytes + _TEXEL_BYTES * self.texels
+        files = _TEXT_BYTES * self.text_bytes + _TEXEL_BYTES * self.texels
+        return files + _OBJECT_BYTES * self.objects
 
     @property
     def samples(self) -> float:
@@ -113,6 +117,7 @@ class Work:
     @classmethod
     def of(
         cls,
+        summary: native.records.CutSummary,
         view: native.View,
         exported: native.records.ExportReport,
         antialias: int,
@@ -129,7 +134,9 @@ class Work:
         return cls(
             *sums, *whole, exported.shadow_rays, antialias, threads, rays, blurred,
             quality.antialias_depth, quality.pixel_error <= 0.0, exported.lamp_rays,
-            exported.sky_lights, exported.soft_lamps, exported.covered,
+            exported.sky_lights, exported.soft_lamps,
+            1.0 if view.border[2] else exported.covered,  # that of the whole picture
+            max(0, summary.occurrences - exported.left_out),
         )  # fmt: skip
 
 
@@ -142,7 +149,8 @@ def predict(work: Work, ratios: Ratios = Ratios()) -> Prediction:
     parse = (_TEXT_S * work.text_bytes + _TEXEL_S * work.texels) * ratios.parse
     each = _SAMPLE_S * math.sqrt(_FEWEST_TEXT + work.text_bytes)
     each *= 1.0 + _SHADOW_SHARE * work.shadow_rays
-    drawn = work.covered * work.pixels * (work.samples + work.gathering)
+    seen = work.covered + _SKY_SHARE * (1.0 - work.covered)
+    drawn = seen * work.pixels * (work.samples + work.gathering)
     trace = drawn * each * ratios.of_trace(work)
     wall = _START_S + parse + trace / max(1, work.threads)
     kept = _PIXEL_BYTES * work.width * work.height

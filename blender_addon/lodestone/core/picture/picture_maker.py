@@ -163,7 +163,7 @@ def _cut_and_export(
     parts["export"] = run_report.export_part(exported)
     quality = shaded.quality
     antialias = native.Antialias[quality.antialias]
-    work = cost_model.Work.of(view, exported, antialias, settings.threads, quality)
+    work = cost_model.Work.of(summary, view, exported, antialias, settings.threads, quality)
     return parts, in_use, work, quality
 
 
