@@ -23,7 +23,7 @@ EXPORTED = {
     "covered": 0.5,
     "left_out": 1,
 }
-SUMMARY = SimpleNamespace(occurrences=4)  # fmt: skip
+SUMMARY = SimpleNamespace(occurrences=4)
 CAMERA = Camera("C", False, (0, 0, 2), (0, 1, 0), (1, 0, 0), (0, 0, 0.5), 0.1, aperture=0.2)
 
 

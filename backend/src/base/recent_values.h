@@ -21,8 +21,7 @@ public:
     explicit RecentValues(size_t most_bytes) : most_bytes_(most_bytes) {}
 
     /// The value of a key; where there is none, what `make()` returns (a shared_ptr, not null) is
-    /// kept, as `bytes_of(value)` bytes. What `make()` throws is thrown, and no
-    /// value is kept.
+    /// kept, as `bytes_of(value)` bytes. What `make()` throws is thrown, and no value is kept.
     template <typename Make, typename BytesOf>
     std::shared_ptr<const T> of(Hash key, const Make& make, const BytesOf& bytes_of) {
         std::shared_ptr<RecentValue> entry;

@@ -3,16 +3,15 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/recent_values.h"
 #include "image/bake/bake_program.h"
 #include "image/picture_findings.h"
 #include "image/texture_sampler.h"
 
 #include <algorithm>
 #include <array>
-#include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <unordered_map>
 
@@ -32,36 +31,6 @@ Hash hash_of_bake(const std::vector<BakeStep>& steps, const std::vector<Texture>
         hasher.value(hash_of(texture));
     return hasher.value(width).value(height).value(space).result();
 }
-
-/// The newest baked pictures, by the hash of what they were made from.
-class RecentBakes {
-public:
-    PicturePtr find(Hash key) {
-        const std::scoped_lock lock(mutex_);
-        for (const auto& [hash, picture] : found_) {
-            if (hash == key)
-                return picture;
-        }
-        return nullptr;
-    }
-    void add(Hash key, const PicturePtr& picture) {
-        // The memory of the remembered pictures.
-        // Taste: a larger value bakes fewer pictures again, when scenes have many.
-        constexpr size_t kMostBytes = size_t{256} << 20u;
-        const std::scoped_lock lock(mutex_);
-        found_.emplace_back(key, picture);
-        bytes_ += picture->bytes.size();
-        while (bytes_ > kMostBytes && found_.size() > 1) {
-            bytes_ -= found_.front().second->bytes.size();
-            found_.pop_front();
-        }
-    }
-
-private:
-    std::mutex mutex_;
-    std::deque<std::pair<Hash, PicturePtr>> found_;
-    size_t bytes_ = 0;
-};
 
 /// The texels of one texture of a bake: as they are, for a picture of the baked size that lies on
 /// all of it, else looked up.
@@ -160,6 +129,25 @@ PicturePtr kept_picture(Hash key, int width, int height, ColorSpace space,
     }
 }
 
+/// Bakes a picture, and keeps it for other sessions.
+PicturePtr baked_picture(Hash key, const std::vector<BakeStep>& steps,
+                         const std::vector<Texture>& textures, int width, int height,
+                         ColorSpace space, const std::string& name, const Job& job) {
+    check_bake(steps, textures.size(), width, height);
+    PackedImage image = blank_packed(width, height, 3, 8, name);
+    bake_rows(steps, textures, width, height, job, [&](size_t row, const float* texels) {
+        unsigned char* to = image.row(static_cast<int>(row));
+        for (int x = 0; x < width; ++x, texels += 4, to += 3) {
+            for (size_t c = 0; c < 3; ++c)  // a linear picture's numbers are not encoded
+                to[c] = space == ColorSpace::Linear ? byte_of(texels[c]) : srgb_byte_of(texels[c]);
+        }
+    });
+    // Not compressed: it is often made anew when a scene is read, and decoded soon.
+    PicturePtr made = make_picture(image, PngEffort::Quick, space, name);
+    keep_bake(key, made->bytes);
+    return made;
+}
+
 }  // namespace
 
 Image bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures, int width,
@@ -180,30 +168,19 @@ Image bake(const std::vector<BakeStep>& steps, const std::vector<Texture>& textu
 PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Texture>& textures,
                         int width, int height, ColorSpace space, const std::string& name,
                         const Job& job) {
-    static RecentBakes remembered;
+    // The bytes of the pictures that the process remembers.
+    // Taste: a larger value bakes fewer pictures again, when scenes have many.
+    constexpr size_t kMostBytes = size_t{256} << 20u;
+    static RecentValues<Picture> remembered(kMostBytes);
     const Hash key = hash_of_bake(steps, textures, width, height, space);
-    PicturePtr made = remembered.find(key);
-    if (made == nullptr) {
-        made = kept_picture(key, width, height, space, name);
-        if (made != nullptr)
-            remembered.add(key, made);
-    }
-    if (made == nullptr) {
-        check_bake(steps, textures.size(), width, height);
-        PackedImage image = blank_packed(width, height, 3, 8, name);
-        bake_rows(steps, textures, width, height, job, [&](size_t row, const float* texels) {
-            unsigned char* to = image.row(static_cast<int>(row));
-            for (int x = 0; x < width; ++x, texels += 4, to += 3) {
-                for (size_t c = 0; c < 3; ++c)  // a linear picture's numbers are not encoded
-                    to[c] =
-                        space == ColorSpace::Linear ? byte_of(texels[c]) : srgb_byte_of(texels[c]);
-            }
-        });
-        // Not compressed: it is often made anew when a scene is read, and decoded soon.
-        made = make_picture(image, PngEffort::Quick, space, name);
-        remembered.add(key, made);
-        keep_bake(key, made->bytes);
-    }
+    const PicturePtr made = remembered.of(
+        key,
+        [&] {
+            PicturePtr kept = kept_picture(key, width, height, space, name);
+            return kept ? kept
+                        : baked_picture(key, steps, textures, width, height, space, name, job);
+        },
+        [](const Picture& picture) { return picture.bytes.size(); });
     if (made->name == name)
         return made;
     auto renamed = std::make_shared<Picture>(*made);

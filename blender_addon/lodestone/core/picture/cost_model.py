@@ -79,7 +79,7 @@ class Ratios:
 class Work:
     """The work of a picture; `pixels` are those drawn."""
 
-    text_bytes: int  # of the files of meshes
+    text_bytes: int  # of meshes and scene.pov
     texels: int  # of all pictures
     pixels: int
     width: int
