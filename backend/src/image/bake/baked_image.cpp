@@ -173,7 +173,7 @@ PicturePtr bake_picture(const std::vector<BakeStep>& steps, const std::vector<Te
     constexpr size_t kMostBytes = size_t{256} << 20u;
     static RecentValues<Picture> remembered(kMostBytes);
     const Hash key = hash_of_bake(steps, textures, width, height, space);
-    const PicturePtr made = remembered.of(
+    PicturePtr made = remembered.of(
         key,
         [&] {
             PicturePtr kept = kept_picture(key, width, height, space, name);
