@@ -267,10 +267,7 @@ void PictureFolder::add(const std::string& name, const std::function<std::string
             return;
         at->second = true;
     }
-    std::filesystem::create_directories(folder_ / "i", error);
-    if (error)
-        fail(Status::Io, "cannot make the folder '", (folder_ / "i").string(),
-             "': ", error.message());
+    make_folder(folder_ / "i");
     write_file(folder_ / name, bytes());
 }
 

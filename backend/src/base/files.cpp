@@ -94,6 +94,13 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
     }
 }
 
+void make_folder(const std::filesystem::path& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error)
+        fail(Status::Io, "cannot make the folder '", path.string(), "': ", error.message());
+}
+
 bool safe_relative_name(std::string_view name) {
     if (name.empty() || name.front() == '/' || name.size() > 240)
         return false;

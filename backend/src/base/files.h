@@ -18,6 +18,9 @@ std::string read_file(const std::filesystem::path& path, uint64_t limit = uint64
 /// new one. Throws Error(Io), and leaves nothing behind.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// Makes a folder, and those it lies in, where there is none. Throws Error(Io).
+void make_folder(const std::filesystem::path& path);
+
 /// True when `name` is a plain relative ASCII path of [A-Za-z0-9_./-] that stays below its folder.
 bool safe_relative_name(std::string_view name);
 

@@ -56,7 +56,7 @@ FindingsFolder::~FindingsFolder() {
 }
 
 fs::path FindingsFolder::path_of(Hash key, Hash sum) const {
-    return folder_ / (hex16(key) + '-' + hex16(sum) + ending_);
+    return folder_ / text(hex16(key), '-', hex16(sum), ending_);
 }
 
 /// The files that have a name of a finding; others are somebody else's.

@@ -28,13 +28,6 @@ Mesh drawable(const Representation& representation) {
     return tessellated(representation);
 }
 
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error)
-        fail(Status::Io, "cannot make the folder '", folder.string(), "': ", error.message());
-}
-
 /// Whether a file has a name as this store and write_file() give it; other files are the user's.
 bool ours(const fs::path& name) {
     static const std::set<std::string> kEndings{".glb", ".bound", ".png", ".jpg", ".exr"};
