@@ -64,12 +64,12 @@ uint8_t grade_of_share(double share) {
     return static_cast<uint8_t>(std::lround((kSkyGrades - 1) * std::sqrt(limited(share, 0, 1))));
 }
 
-uint8_t SkyLight::grade(size_t triangle, int corner, const glm::vec3& at) const {
+double SkyLight::share(size_t triangle, int corner, const glm::vec3& at) const {
     if (!shares)
-        return grade_of_share(factor);
+        return factor;
     const uint8_t byte = shares->corners.at(3 * triangle + static_cast<size_t>(corner));
     const double here = limited(factor + glm::dot(slope, glm::dvec3(at) - middle), 0, 1);
-    return grade_of_share(here * light::share_of_byte(byte));
+    return here * light::share_of_byte(byte);
 }
 
 }  // namespace lodestone::povray

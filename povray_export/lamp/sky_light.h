@@ -26,8 +26,8 @@ struct SkyLight {
     glm::dvec3 middle{0.0};  // own frame: where the factor is that
     Hash hash = 0;           // of all of it
 
-    /// The grade of a corner of the split mesh, which lies there (own frame).
-    uint8_t grade(size_t triangle, int corner, const glm::vec3& at) const;
+    /// The share of a corner of the split mesh, which lies there (own frame).
+    double share(size_t triangle, int corner, const glm::vec3& at) const;
 };
 using SkyLightPtr = std::shared_ptr<const SkyLight>;
 

@@ -20,7 +20,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 14;
+constexpr uint32_t kBakeVersion = 15;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -37,19 +37,29 @@ public:
           options_(options),
           job_(job),
           bakes_(options.file, kSkyVersion),
-          all_(model, cut, options.most_triangles, job) {}
+          all_(model, cut, options.most_triangles, job),
+          surfaces_(model,
+                    options.texels ? options.texels : std::make_shared<image::TexelCache>()) {}
 
     /// The reason why there is none; "" when lights() are found.
     std::string run() {
         if (!all_.too_much().empty())
             return "There is too much in the scene to find what hides the sky: " + all_.too_much();
-        find_keys();
+        find_wanted();
+        choose_rays();
+        for (auto& [key, wanted] : wanted_means_)
+            find_means(key.first, wanted);
         std::string without_rays;
-        if (baked()) {
-            if (!ray::available(&without_rays))
-                return "What hides the sky is not found: " + without_rays;
-            bake();
-        }
+        if (!missing_means_.empty() && !ray::available(&without_rays))
+            return "What hides the sky is not found: " + without_rays;
+        SharedProgress progress(job_, work_of_bake());
+        bake([&] { bake_means(progress); });
+        // Shares of copies depend on the ground that means know.
+        for (auto& [key, wanted] : wanted_shares_)
+            find_shares(key, wanted, progress);
+        if (!missing_.empty() && !ray::available(&without_rays))
+            return "What hides the sky is not found: " + without_rays;
+        bake([&] { bake_shares(progress); });
         light_all();
         return "";
     }
@@ -62,33 +72,35 @@ public:
     }
 
 private:
+    /// A request for the means of all placements of one finest level, or of one stand-in.
+    struct WantedMeans {
+        const Representation* representation = nullptr;
+        bool group = false;  // a stand-in
+        std::vector<Affine> places;
+        light::PlacedMeans found;
+        std::vector<PlacementShade> shades;  // graded
+        Hash key = 0;
+    };
     /// A request for shares: of one surface alone, or of one thing as it is placed.
     struct WantedShares {
         const Representation* representation = nullptr;
         const SkyThing* placed = nullptr;          // null: alone
         const Representation* original = nullptr;  // the finest level; null: it is that
+        const WantedMeans* means = nullptr;        // of its placements; null: alone, and it moves
+        Hash key = 0;                              // where it is kept
         /// By triangle, 1: any of the things shows it. Empty: all count as shown.
         std::vector<uint8_t> seen;
         int rays = 0;                                   // of a corner
         int whole_rays = 0;                             // the same where all of it is seen
         std::shared_ptr<const light::SkyShares> found;  // of as many or fewer until it is baked
     };
-    /// A request for the means of all placements of one finest level, or of one stand-in.
-    struct WantedMeans {
-        const Representation* representation = nullptr;
-        std::vector<Affine> places;
-        std::vector<light::SkyMeans> found;
-        std::vector<PlacementShade> shades;  // graded
-        Hash key = 0;
-    };
-
     Hash key_of(const SkyThing& thing, bool once) const {
         Hasher hasher;
         const RepresentationSummary& summary = thing.representation->summary;
         const SkyThing* placed = once ? &thing : nullptr;
         hasher.value(kBakeVersion).value(options_.rays);
         hasher.value(summary.hash).value(all_.finest_of(thing).summary.hash);
-        hasher.value(summary.cost.triangles);
+        hasher.value(summary.cost.triangles).value(thing.moves);
         if (placed != nullptr) {
             hasher.value(all_.scene()).value(summary.max_error).value(all_.splits_of(*placed));
             hash_transform(hasher, placed->world);
@@ -96,8 +108,8 @@ private:
         return hasher.result();
     }
 
-    /// Finds what was kept, and lists what was not.
-    void find_keys() {
+    /// Lists all that is to be known.
+    void find_wanted() {
         shares_of_.resize(all_.things().size(), nullptr);
         means_of_.resize(all_.things().size(), {nullptr, 0});
         for (size_t i = 0; i < all_.things().size(); ++i) {
@@ -111,18 +123,15 @@ private:
                 note_seen(i, *shares_of_[i]);
             if (!once && !thing.moves)
                 want_means(i);
+            if (shares_of_[i] != nullptr)
+                shares_of_[i]->means = means_of_[i].first;
         }
-        choose_rays();
-        for (auto& [key, wanted] : wanted_shares_)
-            find_shares(key, wanted);
         for (uint32_t i = 0; i < numbers_.size(); ++i) {
             const auto wanted =
                 wanted_means_.find({all_.finest_of(all_.leaves()[i]).summary.hash, false});
             if (wanted != wanted_means_.end())
                 wanted->second.places[numbers_[i]] = all_.leaves()[i].world;
         }
-        for (auto& [key, wanted] : wanted_means_)
-            find_means(key.first, wanted);
     }
 
     /// Whether what was kept is the light on this mesh: splits may be those of another one.
@@ -187,8 +196,16 @@ private:
 
     /// Finds what was kept, or lists what is to be found: the shares of what the picture shows, and
     /// once another picture shows more those of all, so that many pictures do not begin anew.
-    void find_shares(Hash key, WantedShares& wanted) {
-        if (const auto bytes = bakes_.find(key)) {
+    void find_shares(Hash key, WantedShares& wanted, SharedProgress& progress) {
+        const light::SkyHorizon horizon = horizon_of(wanted);
+        wanted.key = Hasher()
+                         .value(key)
+                         .value(horizon.below)
+                         .value(horizon.up.x)
+                         .value(horizon.up.y)
+                         .value(horizon.up.z)
+                         .result();
+        if (const auto bytes = bakes_.find(wanted.key)) {
             auto found =
                 light::SkyShares::of_bytes(*bytes, wanted.representation->summary.cost.triangles);
             if (found && fits(*wanted.representation, *found))
@@ -198,12 +215,20 @@ private:
             const int rays =
                 wanted.found->seen.empty() ? std::min(wanted.rays, wanted.whole_rays) : wanted.rays;
             if (wanted.found->rays >= static_cast<uint32_t>(rays) &&
-                light::covers(*wanted.found, wanted.seen))
+                light::covers(*wanted.found, wanted.seen)) {
+                progress.add(work_of(wanted));
                 return;
+            }
             wanted.seen.clear();
             wanted.rays = wanted.whole_rays;
         }
-        missing_.emplace_back(key, &wanted);
+        missing_.push_back(&wanted);
+    }
+
+    /// What lies below a thing alone.
+    static light::SkyHorizon horizon_of(const WantedShares& wanted) {
+        return wanted.placed == nullptr && wanted.means != nullptr ? wanted.means->found.horizon
+                                                                   : light::SkyHorizon{};
     }
 
     /// The means are those of all placements of the finest level, so that grades do not depend on
@@ -213,6 +238,7 @@ private:
         const Representation& representation = all_.finest_of(thing);
         WantedMeans& wanted = wanted_means_[{representation.summary.hash, thing.group}];
         wanted.representation = &representation;
+        wanted.group = thing.group;
         if (thing.group) {
             means_of_[i] = {&wanted, wanted.places.size()};
             wanted.places.push_back(thing.world);
@@ -248,45 +274,41 @@ private:
             hash_transform(hasher, world);
         wanted.key = hasher.result();
         const auto bytes = bakes_.find(wanted.key);
-        auto found = bytes ? light::means_of(*bytes, wanted.places.size()) : std::nullopt;
+        auto found =
+            bytes ? light::PlacedMeans::of_bytes(*bytes, wanted.places.size()) : std::nullopt;
         if (found)
             wanted.found = std::move(*found);
         else
             missing_means_.push_back(&wanted);
     }
 
-    void bake() {
-        if (options_.load_finest)
-            options_.load_finest();
-        std::vector<light::SkyOccluder> occluders;
-        occluders.reserve(all_.leaves().size());
-        std::vector<const Representation*> all;
-        for (const SkyLeaf& leaf : all_.leaves()) {
-            if (!leaf.hides)
-                continue;
-            occluders.push_back({&all_.finest_of(leaf), leaf.world});
-            all.push_back(&all_.finest_of(leaf));
-        }
-        for (const auto& [key, wanted] : missing_) {
-            all.push_back(wanted->representation);
-            if (wanted->original != nullptr)
-                all.push_back(wanted->original);
-        }
-        for (const WantedMeans* wanted : missing_means_)
-            all.push_back(wanted->representation);
-        light::SkySurfaces surfaces(
-            model_, options_.texels ? options_.texels : std::make_shared<image::TexelCache>());
-        surfaces.add(all, job_);
-        const light::SkyScene scene(model_, surfaces, occluders, job_);
-        SharedProgress progress(job_, work_of_bake());
+    /// Does something, and keeps what was found even where it ends early.
+    template <typename Work>
+    void bake(const Work& work) {
         try {
-            bake_shares(surfaces, scene, progress);
-            bake_means(surfaces, scene, progress);
+            work();
         } catch (const Error&) {
             keep();  // what is finished is not found again
             throw;
         }
         keep();
+    }
+
+    /// All that hides the sky, made when something is to be found.
+    const light::SkyScene& scene() {
+        if (around_)
+            return *around_;
+        if (options_.load_finest)
+            options_.load_finest();
+        std::vector<const Representation*> all;
+        for (const SkyLeaf& leaf : all_.leaves()) {
+            if (!leaf.hides)
+                continue;
+            occluders_.push_back({&all_.finest_of(leaf), leaf.world});
+            all.push_back(&all_.finest_of(leaf));
+        }
+        surfaces_.add(all, job_);
+        return around_.emplace(model_, surfaces_, occluders_, job_);
     }
 
     /// The rays of a bake, about: two triangles have about one corner.
@@ -295,8 +317,8 @@ private:
     }
     uint64_t work_of_bake() const {
         uint64_t work = 1;
-        for (const auto& [key, wanted] : missing_)
-            work += work_of(*wanted);
+        for (const auto& [key, wanted] : wanted_shares_)
+            work += work_of(wanted);
         for (const WantedMeans* wanted : missing_means_)
             work += wanted->places.size() * static_cast<uint64_t>(mean_rays());
         return work;
@@ -306,40 +328,49 @@ private:
         return wanted.placed != nullptr && wanted.placed->group;
     }
 
-    void bake_shares(const light::SkySurfaces& surfaces, const light::SkyScene& scene,
-                     SharedProgress& progress) {
+    void bake_shares(SharedProgress& progress) {
+        if (missing_.empty())
+            return;
+        scene();  // loads what is missing
+        std::vector<const Representation*> all;
+        for (const WantedShares* wanted : missing_) {
+            all.push_back(wanted->representation);
+            if (wanted->original != nullptr)
+                all.push_back(wanted->original);
+        }
+        surfaces_.add(all, job_);
         parallel_for(missing_.size(), [&](size_t i) {
-            WantedShares& wanted = *missing_[i].second;
+            WantedShares& wanted = *missing_[i];
             if (stands_in(wanted))
                 return;
-            const bool is_finest = wanted.original == nullptr;
-            bake_one(wanted, is_finest ? nullptr : &surfaces.of(*wanted.original), surfaces, scene);
+            bake_one(wanted,
+                     wanted.original == nullptr ? nullptr : &surfaces_.of(*wanted.original));
             progress.add(work_of(wanted));
         });
         // One after the other, for what they stand for is joined and takes memory.
-        for (const auto& [key, wanted] : missing_) {
+        for (WantedShares* wanted : missing_) {
             if (!stands_in(*wanted))
                 continue;
             job_.check();
             const std::optional<light::SkySurface> joined = light::joined_surface(
-                surfaces, occluders_below(*wanted->placed), wanted->placed->world);
-            bake_one(*wanted, joined ? &*joined : nullptr, surfaces, scene);
+                surfaces_, occluders_below(*wanted->placed), wanted->placed->world);
+            bake_one(*wanted, joined ? &*joined : nullptr);
             progress.add(work_of(*wanted));
         }
     }
 
-    void bake_one(WantedShares& wanted, const light::SkySurface* original,
-                  const light::SkySurfaces& surfaces, const light::SkyScene& scene) const {
+    void bake_one(WantedShares& wanted, const light::SkySurface* original) const {
         job_.check();
         light::SkyRequest request{
-            surfaces.of(*wanted.representation), {}, nullptr, 0, wanted.rays, 0, options_.rays};
+            surfaces_.of(*wanted.representation), {}, nullptr, 0, wanted.rays, 0, options_.rays};
         request.error = wanted.representation->summary.max_error;
         request.original = original;
         request.seen = wanted.seen;
         request.known = wanted.found.get();
+        request.horizon = horizon_of(wanted);
         if (wanted.placed != nullptr) {
             request.world = wanted.placed->world;
-            request.around = &scene;
+            request.around = &*around_;
             request.splits = all_.splits_of(*wanted.placed);
         }
         wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
@@ -356,34 +387,44 @@ private:
         return out;
     }
 
-    void bake_means(const light::SkySurfaces& surfaces, const light::SkyScene& scene,
-                    SharedProgress& progress) {
+    void bake_means(SharedProgress& progress) {
+        if (missing_means_.empty())
+            return;
+        const light::SkyScene& around = scene();
+        std::vector<const Representation*> all;
+        for (const WantedMeans* wanted : missing_means_)
+            all.push_back(wanted->representation);
+        surfaces_.add(all, job_);
         const int rays = mean_rays();
         for (WantedMeans* wanted : missing_means_) {
-            std::vector<light::SkyMeans> found(wanted->places.size());
-            const light::SkySurface& surface = surfaces.of(*wanted->representation);
-            parallel_for(found.size(), [&](size_t i) {
+            light::PlacedMeans found;
+            found.means.resize(wanted->places.size());
+            const light::SkySurface& surface = surfaces_.of(*wanted->representation);
+            if (!wanted->group)
+                found.horizon = light::sky_horizon(surface, wanted->places, around);
+            parallel_for(found.means.size(), [&](size_t i) {
                 job_.check();
-                const light::SkyRequest request{surface, wanted->places[i], &scene,
-                                                wanted->representation->summary.max_error, rays};
-                found[i] = mean_sky_shares(request, rays);
+                light::SkyRequest request{surface, wanted->places[i], &around,
+                                          wanted->representation->summary.max_error, rays};
+                request.horizon = found.horizon;
+                found.means[i] = mean_sky_shares(request, rays);
                 progress.add(static_cast<uint64_t>(rays));
             });
             // The numbers are those that are kept, so that the next picture has the same.
-            auto kept = light::means_of(light::bytes_of(found), found.size());
+            auto kept = light::PlacedMeans::of_bytes(found.bytes(), found.means.size());
             wanted->found = kept ? std::move(*kept) : std::move(found);
         }
     }
 
     /// Keeps what was found now.
     void keep() {
-        for (const auto& [key, wanted] : missing_) {
+        for (const WantedShares* wanted : missing_) {
             if (wanted->found)
-                bakes_.add(key, wanted->found->bytes());
+                bakes_.add(wanted->key, wanted->found->bytes());
         }
         for (const WantedMeans* wanted : missing_means_) {
-            if (!wanted->found.empty())
-                bakes_.add(wanted->key, light::bytes_of(wanted->found));
+            if (!wanted->found.means.empty())
+                bakes_.add(wanted->key, wanted->found.bytes());
         }
         bakes_.save();
     }
@@ -391,7 +432,7 @@ private:
     void light_all() {
         for (auto& [hash, wanted] : wanted_means_) {
             std::vector<PlacementShade> shades;
-            for (const light::SkyMeans& mean : wanted.found) {
+            for (const light::SkyMeans& mean : wanted.found.means) {
                 const double ratio = mean.alone > 0 ? limited(mean.placed / mean.alone, 0, 1) : 1;
                 const glm::dvec3 middle = wanted.representation->summary.bound.box.center();
                 shades.push_back(
@@ -404,7 +445,7 @@ private:
         for (size_t i = 0; i < all_.things().size(); ++i) {
             const auto& [means, number] = means_of_[i];
             if (means != nullptr)
-                means_[i] = means->found[number].placed;
+                means_[i] = means->found.means[number].placed;
             if (shares_of_[i] == nullptr) {
                 if (means != nullptr)
                     lights_[i] = even_sky_light(share_of_grade(grade_of_share(means_[i])));
@@ -413,7 +454,7 @@ private:
             const std::shared_ptr<const light::SkyShares>& shares = shares_of_[i]->found;
             if (means == nullptr)
                 means_[i] = shares->mean;
-            const Hash key = key_of(all_.things()[i], shares_of_[i]->placed != nullptr);
+            const Hash key = shares_of_[i]->key;
             lights_[i] = means == nullptr ? sky_light(key, shares, {}, {})
                                           : sky_light(key, shares, means->shades[number],
                                                       means->representation->summary.bound.box);
@@ -445,10 +486,13 @@ private:
     const Job& job_;
     FindingsFile bakes_;
     SkyThings all_;
+    light::SkySurfaces surfaces_;
+    std::vector<light::SkyOccluder> occluders_;
+    std::optional<light::SkyScene> around_;
     std::vector<uint32_t> numbers_;  // by leaf
     std::map<Hash, WantedShares> wanted_shares_;
     std::map<std::pair<Hash, bool>, WantedMeans> wanted_means_;  // with: a stand-in
-    std::vector<std::pair<Hash, WantedShares*>> missing_;
+    std::vector<WantedShares*> missing_;
     std::vector<WantedMeans*> missing_means_;
     std::vector<WantedShares*> shares_of_;                   // by thing
     std::vector<std::pair<WantedMeans*, size_t>> means_of_;  // by thing

@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/error.h"
+#include "geometry/closest_on_triangle.h"
 #include "image/image.h"
 #include "light/clear_materials.h"
 #include "povray_export/mesh/uv_extent.h"
@@ -304,13 +305,26 @@ uint8_t MeshTextures::sky_grade(size_t triangle, int corner) const {
     if (!sky_ || !sky_->shares)
         return kSkyGrades - 1;
     const size_t source = cut_.any ? cut_.sources[triangle] : triangle;
-    const bool whole = !cut_.any || shown_.triangles[triangle] == mesh_.triangles[source];
-    if (whole && !slots_[slot_at_[mesh_.slot(source)]].even_sky)
-        return sky_->grade(source, corner, mesh_.positions[mesh_.triangles[source][corner]]);
-    int sum = 1;  // rounds to the nearest
-    for (int i = 0; i < 3; ++i)
-        sum += sky_->grade(source, i, mesh_.positions[mesh_.triangles[source][i]]);
-    return static_cast<uint8_t>(sum / 3);
+    const Triangle& corners = mesh_.triangles[source];
+    std::array<double, 3> shares{};
+    std::array<glm::dvec3, 3> at{};
+    for (int i = 0; i < 3; ++i) {
+        const glm::vec3& position = mesh_.positions[corners[i]];
+        at[static_cast<size_t>(i)] = glm::dvec3(position);
+        shares[static_cast<size_t>(i)] = sky_->share(source, i, position);
+    }
+    const bool even = slots_[slot_at_[mesh_.slot(source)]].even_sky;
+    const Triangle& shown = shown_.triangles[triangle];
+    if (shown == corners)
+        return grade_of_share(even ? (shares[0] + shares[1] + shares[2]) / 3
+                                   : shares[static_cast<size_t>(corner)]);
+    glm::dvec3 place(shown_.positions[shown[corner]]);
+    if (even) {
+        const auto position = [&](int i) { return glm::dvec3(shown_.positions[shown[i]]); };
+        place = (position(0) + position(1) + position(2)) / 3.0;
+    }
+    const geometry::OnTriangle on = geometry::closest_on_triangle(place, at[0], at[1], at[2]);
+    return grade_of_share((1 - on.u - on.v) * shares[0] + on.u * shares[1] + on.v * shares[2]);
 }
 
 /// The number of different colors, with their grades of the sky's light, once colors are rounded;

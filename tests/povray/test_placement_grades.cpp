@@ -89,10 +89,10 @@ TEST(SkyGrades, ACornerHasTheShareOfItsPlace) {
     light.factor = 0.5;
     light.slope = {0, 0, 0.25};
     light.middle = {0, 0, 1};
-    EXPECT_EQ(light.grade(0, 1, {7, 7, 1}), grade_of_share(0.5));
-    EXPECT_EQ(light.grade(0, 1, {7, 7, 2}), grade_of_share(0.75));
-    EXPECT_EQ(light.grade(0, 1, {7, 7, 9}), grade_of_share(1));
-    EXPECT_EQ(light.grade(0, 1, {7, 7, -9}), grade_of_share(0));
+    EXPECT_EQ(light.share(0, 1, {7, 7, 1}), 0.5);
+    EXPECT_EQ(light.share(0, 1, {7, 7, 2}), 0.75);
+    EXPECT_EQ(light.share(0, 1, {7, 7, 9}), 1);
+    EXPECT_EQ(light.share(0, 1, {7, 7, -9}), 0);
 }
 
 TEST(SkyGrades, AreTheNearestToShares) {

@@ -122,7 +122,9 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         const SkySampler::SkyPlace place =
             sampler.place(mesh, triangle, *placed, static_cast<uint32_t>(both ? i / 2 : i), near);
         const SkySampler::SkyRay ray = sampler.ray(place, both && i % 2 == 1);
-        const double alone = ray.open && !sampler.hidden_alone(ray) ? 1 : 0;
+        const double light = ray.open ? sampler.light(ray) : 0;
+        const double alone = light > 0 && !sampler.hidden_alone(ray) ? light : 0;
+        // Of some of the sky below there is as much where nothing hides it, on the average.
         const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
         all.placed += weight * seen;
         all.alone += weight * alone;
@@ -138,7 +140,7 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
             inside.alone += weight * alone;
             inside.rays += weight;
         } else if (alone > 0) {
-            passed.add(place.at, weight, seen);
+            passed.add(place.at, weight * alone, seen / alone);
         }
     }
     if (inside.rays < all.rays) {
@@ -153,34 +155,39 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     return out;
 }
 
-std::string bytes_of(const std::vector<SkyMeans>& means) {
+std::string PlacedMeans::bytes() const {
     std::string out;
-    for (const SkyMeans& one : means) {
-        const std::array<double, kNumbers> numbers{one.placed,   one.alone,   one.slope.x,
-                                                   one.slope.y,  one.slope.z, one.middle.x,
-                                                   one.middle.y, one.middle.z};
-        for (const double number : numbers) {
-            const auto value = static_cast<float>(number);
+    const auto add = [&](auto... numbers) {
+        for (const float value : {static_cast<float>(numbers)...})
             out.append(reinterpret_cast<const char*>(&value), sizeof value);
-        }
-    }
+    };
+    add(horizon.up.x, horizon.up.y, horizon.up.z, horizon.below);
+    for (const SkyMeans& one : means)
+        add(one.placed, one.alone, one.slope.x, one.slope.y, one.slope.z, one.middle.x,
+            one.middle.y, one.middle.z);
     return out;
 }
 
-std::optional<std::vector<SkyMeans>> means_of(std::string_view bytes, size_t count) {
+std::optional<PlacedMeans> PlacedMeans::of_bytes(std::string_view bytes, size_t count) {
     std::array<float, kNumbers> numbers{};
-    if (bytes.size() != count * sizeof numbers)
+    std::array<float, 4> horizon{};
+    if (bytes.size() != sizeof horizon + count * sizeof numbers)
         return {};
-    std::vector<SkyMeans> out;
+    std::memcpy(horizon.data(), bytes.data(), sizeof horizon);
+    const auto [x, y, z, below] = horizon;
+    PlacedMeans out{{{x, y, z}, below}, {}};
+    if (!finite(out.horizon.up) || !(below >= 0 && below <= 1))
+        return {};
     for (size_t i = 0; i < count; ++i) {
-        std::memcpy(numbers.data(), bytes.data() + i * sizeof numbers, sizeof numbers);
+        std::memcpy(numbers.data(), bytes.data() + sizeof horizon + i * sizeof numbers,
+                    sizeof numbers);
         const auto [placed, alone, sx, sy, sz, mx, my, mz] = numbers;
         const SkyMeans one{placed, alone, {sx, sy, sz}, {mx, my, mz}};
         // Things around another one hide more of its sky, never less.
         if (!(placed >= 0 && placed <= alone && alone <= 1) || !finite(one.slope) ||
             !finite(one.middle))
             return {};
-        out.push_back(one);
+        out.means.push_back(one);
     }
     return out;
 }

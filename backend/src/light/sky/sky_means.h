@@ -23,8 +23,14 @@ struct SkyMeans {
 /// Those that so many rays tell.
 SkyMeans mean_sky_shares(const SkyRequest& request, int rays);
 
-/// The means of a list of placements as bytes that are kept, and back; none where they are damaged.
-std::string bytes_of(const std::vector<SkyMeans>& means);
-std::optional<std::vector<SkyMeans>> means_of(std::string_view bytes, size_t count);
+/// The means of the placements of one surface, and what they stand on.
+struct PlacedMeans {
+    SkyHorizon horizon;  // that they were found with
+    std::vector<SkyMeans> means;
+
+    /// As bytes that are kept, and back; none where they are damaged.
+    std::string bytes() const;
+    static std::optional<PlacedMeans> of_bytes(std::string_view bytes, size_t count);
+};
 
 }  // namespace lodestone::light

@@ -2,6 +2,7 @@
 // Sky sampler: the rays that tell how much of the sky the triangles of a placed surface see.
 #pragma once
 
+#include "light/sky/sky_horizon.h"
 #include "light/sky/sky_scene.h"
 #include "light/sky/sky_shares.h"
 #include "measure/visible/sobol_points.h"
@@ -33,6 +34,8 @@ struct SkyRequest {
     std::span<const uint8_t> seen = {};
     /// The shares that were found for fewer seen triangles, whose splits are kept. Null: none were.
     const SkyShares* known = nullptr;
+    /// Of the surface alone: how much of the sky below it counts.
+    SkyHorizon horizon = {};
 };
 
 /// The answers of the rays of one triangle.
@@ -43,6 +46,11 @@ struct TriangleShares {
     /// The weights of rays that begin inside of something opaque, which are not in the others.
     std::array<double, 3> inside_rays{};
     bool inside = false;  // true: all of it lies inside of something opaque
+    /// Of rays that were cast once more from the places of leaves, to the same sides: how many there
+    /// are, what they saw, and the same times what the first ones saw.
+    double again = 0;
+    double again_seen = 0;
+    double both_seen = 0;
 
     double share() const {
         const double sum = rays[0] + rays[1] + rays[2];
@@ -102,6 +110,14 @@ public:
         bool open = false;  // false: it points into the surface
     };
     SkyRay ray(const SkyPlace& place, bool back, bool opposite = false) const;
+    /// The same place, whose rays have other directions, by chance.
+    static SkyPlace again(const SkyPlace& place, uint64_t seed);
+
+    /// Whether a ray points below the horizon, and how much light there is where nothing hides it.
+    bool down(const SkyRay& ray) const {
+        return request_.horizon.down(to_own_.linear * ray.direction);
+    }
+    double light(const SkyRay& ray) const { return down(ray) ? request_.horizon.below : 1; }
 
     /// Whether the sky is hidden on a ray: by anything, or by the surface itself.
     bool hidden(const SkyRay& ray, uint32_t& blocker) const;
@@ -111,6 +127,11 @@ public:
     bool lies_inside(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed) const;
 
 private:
+    /// The light of the sky on a ray, 0...1: none where anything hides it.
+    double seen(const SkyRay& ray, uint32_t& blocker) const {
+        const double sky = ray.open ? light(ray) : 0;
+        return sky > 0 && !hidden(ray, blocker) ? sky : 0;
+    }
     TriangleShares shares_of_front(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed,
                                    int rays) const;
     /// The face and the smooth normal of a place on a triangle.

@@ -2,7 +2,7 @@
 #include "light/sky/sky_visibility.h"
 
 #include "base/parallel.h"
-#include "measure/visible/sobol_points.h"
+#include "light/sky/corner_shares.h"
 
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
@@ -10,9 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <unordered_map>
 
 namespace lodestone::light {
 namespace {
@@ -43,9 +41,6 @@ constexpr int kFewestPart = 8;  // Taste: as kFewestRays, the other way round
 // The rays of a triangle that is not seen, for the mean of all.
 // Taste: the fewest, for rays are cast in pairs.
 constexpr int kUnseenRays = 2;
-// The steps of a unit normal's coordinates within which flat triangles face the same way.
-// Taste: a larger value smooths less over folds.
-constexpr double kNormalSteps = 32;
 
 /// The shares of a mesh's triangles while it is being split.
 class SkyBake {
@@ -276,119 +271,19 @@ private:
         sample(fresh);
     }
 
-    /// Corners share a number where they are at one place and face the same way.
-    struct CornerKey {
-        uint32_t vertex;
-        std::array<int, 3> normal;
-        bool opaque;
-        bool operator==(const CornerKey&) const = default;
-    };
-    struct CornerKeyHash {
-        size_t operator()(const CornerKey& key) const {
-            uint64_t out = key.vertex * uint64_t{2} + (key.opaque ? 1 : 0);
-            for (const int part : key.normal)
-                out = measure::scramble(out + static_cast<uint64_t>(part + 64));
-            return static_cast<size_t>(out);
-        }
-    };
-    CornerKey key_of(size_t triangle, int corner) const {
-        const Mesh& mesh = split_.mesh();
-        const uint32_t vertex = mesh.triangles[triangle][corner];
-        glm::dvec3 normal =
-            mesh.normals.empty() ? area_vector(mesh, triangle) : glm::dvec3(mesh.normals[vertex]);
-        const double length = glm::length(normal);
-        CornerKey key{split_.welded()[vertex], {}, opaque(triangle)};
-        if (length > 0 && std::isfinite(length)) {
-            for (int i = 0; i < 3; ++i)
-                key.normal[static_cast<size_t>(i)] =
-                    static_cast<int>(std::lround(kNormalSteps * normal[i] / length));
-        }
-        return key;
-    }
-
     SkyShares finished() {
-        const Mesh& mesh = split_.mesh();
         SkyShares out;
         out.splits = std::move(splits_);
         out.long_rounds = static_cast<uint32_t>(long_rounds_);
         out.seen.assign(request_.seen.begin(), request_.seen.end());
         out.rays = static_cast<uint32_t>(std::max(request_.rays, 0));
-        std::unordered_map<CornerKey, uint32_t, CornerKeyHash> known;
-        known.reserve(mesh.triangles.size());
-        std::vector<uint32_t> groups(3 * mesh.triangles.size());
-        struct GroupShares {
-            double seen = 0;
-            double rays = 0;
-            double back = 0;      // of what is seen: by the backs of leaves
-            double count = 0;     // of rays
-            double all_seen = 0;  // those inside of something too
-            double all_rays = 0;
-            bool opaque = true;
-            /// See of_side_that_is_seen().
-            double factor() const {
-                const double side = rays / 2;
-                return opaque || !(side > 0)
-                           ? 1
-                           : of_side_that_is_seen((seen - back) / side, back / side, count / 2);
-            }
-        };
-        std::vector<GroupShares> sums;
-        double seen = 0;
-        double area = 0;
-        double all_seen = 0;  // those inside of something too
-        double all_area = 0;
-        for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-            const TriangleShares& shares = shares_[i];
-            const std::optional<SkySampler::PlacedTriangle> placed = sampler_.placed(mesh, i);
-            const double own = placed ? placed->area : 0;
-            const double rays = shares.rays[0] + shares.rays[1] + shares.rays[2];
-            const double inside_rays =
-                shares.inside_rays[0] + shares.inside_rays[1] + shares.inside_rays[2];
-            if (rays + inside_rays > 0) {
-                all_seen += own * shares.share() * rays / (rays + inside_rays);
-                all_area += own;
-            }
-            if (rays > 0 && !shares.inside) {
-                seen += own * shares.share();
-                area += own;
-            }
-            for (int corner = 0; corner < 3; ++corner) {
-                const size_t at = static_cast<size_t>(corner);
-                const auto [found, fresh] =
-                    known.try_emplace(key_of(i, corner), static_cast<uint32_t>(sums.size()));
-                if (fresh)
-                    sums.emplace_back();
-                groups[3 * i + at] = found->second;
-                if (!(rays + inside_rays > 0))
-                    continue;
-                GroupShares& group = sums[found->second];
-                group.opaque = opaque(i);
-                const double weight = own / (rays + inside_rays);
-                group.all_seen += weight * shares.seen[at];
-                group.all_rays += weight * (shares.rays[at] + shares.inside_rays[at]);
-                if (!shares.inside) {
-                    group.seen += weight * shares.seen[at];
-                    group.rays += weight * shares.rays[at];
-                    group.back += weight * shares.back[at];
-                    group.count += shares.rays[at];
-                }
-            }
+        CornerShares corners(split_.mesh(), split_.welded(), request_.surface);
+        for (size_t i = 0; i < shares_.size(); ++i) {
+            const std::optional<SkySampler::PlacedTriangle> placed =
+                sampler_.placed(split_.mesh(), i);
+            corners.add(i, shares_[i], placed ? placed->area : 0);
         }
-        for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-            const auto placed = opaque(i) ? std::nullopt : sampler_.placed(mesh, i);
-            for (size_t corner = 0; placed && corner < 3; ++corner)
-                seen += placed->area / 3 * shares_[i].share() *
-                        (sums[groups[3 * i + corner]].factor() - 1);
-        }
-        out.mean = area > 0 ? seen / area : (all_area > 0 ? all_seen / all_area : 1);
-        out.corners.reserve(groups.size());
-        for (const uint32_t index : groups) {
-            const GroupShares& group = sums[index];
-            const double share = group.rays > 0       ? group.factor() * group.seen / group.rays
-                                 : group.all_rays > 0 ? group.all_seen / group.all_rays
-                                                      : out.mean;
-            out.corners.push_back(share_byte(share));
-        }
+        corners.finish(shares_, out);
         return out;
     }
 

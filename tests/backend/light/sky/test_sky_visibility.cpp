@@ -422,14 +422,16 @@ TEST_F(SkyVisibility, OfAFlattenedBoxBesideAWallIsAHalf) {
 }
 
 TEST_F(SkyVisibility, MeansThatCannotBeAreRefused) {
-    const std::vector<SkyMeans> good = {{0.25, 0.5, {1, 0, -2}, {0, 3, 0}}, {1, 1}, {0, 0}};
-    const auto back = means_of(bytes_of(good), 3);
+    const PlacedMeans good{{{0, 1, 0}, 0.25}, {{0.25, 0.5, {1, 0, -2}, {0, 3, 0}}, {1, 1}, {0, 0}}};
+    const auto back = PlacedMeans::of_bytes(good.bytes(), 3);
     ASSERT_TRUE(back);
-    EXPECT_EQ((*back)[0].placed, 0.25);
-    EXPECT_EQ((*back)[0].alone, 0.5);
-    EXPECT_EQ((*back)[0].slope, glm::dvec3(1, 0, -2));
-    EXPECT_EQ((*back)[0].middle, glm::dvec3(0, 3, 0));
-    EXPECT_FALSE(means_of(bytes_of(good), 2));
+    EXPECT_EQ(back->horizon.up, glm::dvec3(0, 1, 0));
+    EXPECT_EQ(back->horizon.below, 0.25);
+    EXPECT_EQ(back->means[0].placed, 0.25);
+    EXPECT_EQ(back->means[0].alone, 0.5);
+    EXPECT_EQ(back->means[0].slope, glm::dvec3(1, 0, -2));
+    EXPECT_EQ(back->means[0].middle, glm::dvec3(0, 3, 0));
+    EXPECT_FALSE(PlacedMeans::of_bytes(good.bytes(), 2));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const SkyMeans bad : {SkyMeans{nan, 1},
                                {0, nan},
@@ -439,7 +441,10 @@ TEST_F(SkyVisibility, MeansThatCannotBeAreRefused) {
                                {kInfinity, kInfinity},
                                {0.5, 1, {nan, 0, 0}},
                                {0.5, 1, {}, {0, 0, kInfinity}}})
-        EXPECT_FALSE(means_of(bytes_of({bad}), 1)) << bad.placed << ' ' << bad.alone;
+        EXPECT_FALSE(PlacedMeans::of_bytes(PlacedMeans{{}, {bad}}.bytes(), 1))
+            << bad.placed << ' ' << bad.alone;
+    for (const SkyHorizon bad : {SkyHorizon{{nan, 0, 1}, 1}, {{0, 0, 1}, nan}, {{0, 0, 1}, 2}})
+        EXPECT_FALSE(PlacedMeans::of_bytes(PlacedMeans{bad, {}}.bytes(), 0)) << bad.below;
 }
 
 TEST_F(SkyVisibility, SharesComeBackFromBytesAndDamagedOnesAreRefused) {

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards what leaves answer to whose places are lit unevenly.
+#include "backend/light/sky/sky_places.h"
+#include "light/sky/corner_shares.h"
+
+using namespace lodestone;
+using namespace lodestone::light;
+
+namespace {
+
+/// Squares of a metre side by side, 3 metres apart, `width` of each from its left edge.
+Mesh squares(int count, float width, float z) {
+    Mesh out;
+    for (int i = 0; i < count; ++i) {
+        const auto first = static_cast<uint32_t>(out.positions.size());
+        for (const glm::vec3& at : shapes::quad(width, 1).positions)
+            out.positions.emplace_back(at + glm::vec3(3 * i, 0, z));
+        for (const Triangle& t : shapes::quad(width, 1).triangles)
+            out.triangles.emplace_back(first + t);
+    }
+    return out;
+}
+
+class CornerSharesTest : public SkyPlaces {
+protected:
+    /// The mean share of cards on a ground, half of each of which lies under a roof.
+    double mean(int count, bool leaves, bool roofs = true) {
+        Material leaf;
+        leaf.alpha = 0.99;
+        leaf.alpha_mode = AlphaMode::Blend;
+        const ObjectIndex cards = builder.mesh(
+            squares(count, 1, 0), {leaves ? builder.material(leaf) : builder.matte({1, 1, 1})});
+        Mesh below = squares(count, 0.5f, 0.02f);
+        for (Triangle& t : below.triangles)
+            std::swap(t.y, t.z);
+        const ObjectIndex roof = builder.mesh(below);
+        const ObjectIndex ground = builder.mesh(shapes::quad(4000, 4000));
+        std::vector<std::pair<ObjectIndex, Affine>> things{
+            {cards, {}}, {ground, {glm::dmat3(1.0), {-2000, -2000, -0.02}}}};
+        if (roofs)
+            things.emplace_back(roof, Affine{});
+        const SkyPlace place(*this, things);
+        return sky_shares({place.surfaces.of(finest(cards)), {}, &*place.scene, 0, 128, 0}, {})
+            .mean;
+    }
+};
+
+}  // namespace
+
+// Crowns were darker than Cycles': what is seen of a card is what nothing covers.
+TEST_F(CornerSharesTest, ALeafIsAsLightAsThePlacesThatAreSeenOfIt) {
+    EXPECT_NEAR(mean(60, false), 0.5, 0.05);
+    EXPECT_GT(mean(60, true), 0.75);
+}
+
+TEST_F(CornerSharesTest, LeavesThatAreLitEvenlyStayAsTheyAre) {
+    EXPECT_NEAR(mean(60, true, false), 1, 0.01);
+    // Of one card the rays are too few to tell.
+    EXPECT_LT(mean(1, true), 0.72);
+}
