@@ -72,12 +72,14 @@ public:
         if (!options_.colors.empty() && options_.colors.size() != cut_.chosen.size())
             fail(Status::InvalidArgument, options_.colors.size(), " colors for ",
                  cut_.chosen.size(), " chosen occurrences");
-        make_folders();
+        make_folder(options_.folder / "r");
         if (!options_.covered_only)
             sky_ = write_sky(view_world(), sky_sampling(), options_.folder, problems_);
         find_needs();
         find_sky_light();
         collect();
+        plan_ = light_plan();
+        add_files();
         includes_.write(job_.part(sky_light_ && sky_light_->baked() ? kBakePart : 0, 1));
         hide_replaced();
         name_problems();
@@ -105,14 +107,6 @@ private:
         if (!lit(options))
             out.bounces = 0;
         return out;
-    }
-
-    void make_folders() const {
-        std::error_code error;
-        std::filesystem::create_directories(options_.folder / "r", error);
-        if (error)
-            fail(Status::Io, "cannot make the folder '", (options_.folder / "r").string(),
-                 "': ", error.message());
     }
 
     /// The representations that classes of rays meet, where there is light at all.
@@ -177,34 +171,62 @@ private:
         return path.empty() ? model_.objects.at(cut_.nodes[node].object).name : path;
     }
 
-    /// Adds a use of a representation of its node, in its file.
+    const Representation& representation_of(const OccurrenceUse& use) const {
+        return model_.objects.at(cut_.nodes[use.node].object).representations.at(use.lod);
+    }
+
+    /// Adds a use of a representation of its node.
     void add_use(OccurrenceUse use, bool textures, const SkyLightPtr& sky) {
-        const choose::CutNode& node = cut_.nodes[use.node];
-        const Representation& representation =
-            model_.objects.at(node.object).representations.at(use.lod);
         if (!make_invertible(use.world)) {  // nothing is seen of a line or a point anyway
             if (!use.world.finite())
                 problems_.push_back({called(use.node), Severity::Warning, "bad_transform",
                                      "is not drawn: its transform is not a number"});
             return;
         }
-        const Bound bound = transformed(representation.summary.bound, use.world);
-        const double pixel = pixels_.at(bound) / enlarged(use);
-        const bool cut = use.position != kNoPosition;
-        const bool shadows = textures && lit() && shading_.bounces == 0 && use.in_place == 0 &&
-                             ((cut && !needs_.seen(use.position)) || pixels_.only_shadows(bound));
-        use.file = includes_.add(
-            representation,
-            {.textures = textures,
-             .uvs = options_.uvs,
-             .coarse_crowds = view_.pixel_error > 0,
-             .sky = textures && !shadows ? sky : nullptr,
-             .few_textures = textures && plans_lights() && report_.lamps >= light::kManyLamps,
-             .only_shadows = shadows},
-            outline_of(pixel), cut ? needs_.triangles(use.position) : std::span<const uint8_t>{});
         uses_.push_back(use);
-        if (includes_.at(use.file).pictured)
-            includes_.note_texel(use.file, shading_.texture_error * pixel);
+        looks_.push_back({textures, sky});
+        bounds_.push_back(transformed(representation_of(use).summary.bound, use.world));
+    }
+
+    /// How a use looks.
+    struct UseLook {
+        bool textures = false;
+        SkyLightPtr sky;
+    };
+
+    /// Lets each use be drawn from a file.
+    void add_files() {
+        // The shadow rays to lamps of a point from which on it has one texture, in a thing or in the
+        // mean of the picture.
+        // Taste: a larger value draws gloss better where lamps shine, and takes longer there.
+        constexpr double kFewLampRays = 4;
+        const double mean = plan_.empty() ? 0 : light::mean_lamp_rays(plan_, model_.lights);
+        const std::vector<double> rays = lamp_rays(bounds_, plan_);
+        for (size_t i = 0; i < uses_.size(); ++i) {
+            OccurrenceUse& use = uses_[i];
+            const auto& [textures, sky] = looks_[i];
+            const Bound& bound = bounds_[i];
+            const Representation& representation = representation_of(use);
+            const double pixel = pixels_.at(bound) / enlarged(use);
+            const bool cut = use.position != kNoPosition;
+            const bool shadows =
+                textures && lit() && shading_.bounces == 0 && use.in_place == 0 &&
+                ((cut && !needs_.seen(use.position)) || pixels_.only_shadows(bound));
+            use.file =
+                includes_.add(representation,
+                              {.textures = textures,
+                               .uvs = options_.uvs,
+                               .coarse_crowds = view_.pixel_error > 0,
+                               .sky = textures && !shadows ? sky : nullptr,
+                               .few_textures = textures && std::max(rays[i], mean) >= kFewLampRays,
+                               .only_shadows = shadows},
+                              outline_of(pixel),
+                              cut ? needs_.triangles(use.position) : std::span<const uint8_t>{});
+            if (includes_.at(use.file).pictured)
+                includes_.note_texel(use.file, shading_.texture_error * pixel);
+        }
+        find_bands();
+        includes_.name(options_.budget, cut_.bytes, job_);
     }
 
     void collect() {
@@ -240,8 +262,6 @@ private:
                         false, nullptr);
         }
         collect_own();
-        find_bands();
-        includes_.name(options_.budget, cut_.bytes, job_);
     }
 
     /// The factor by which a use shows its representation larger, with what it counts for.
@@ -308,17 +328,8 @@ private:
     bool plans_lights() const { return lit() && options_.light_error != 0.0; }
     const World& view_world() const { return model_.world; }
 
-    /// The rays of a light's size. Where depths are blurred each of 37 samples of a pixel or more
-    /// casts its rays to every lamp, so that half of them along an edge are as good.
     LightSampling light_sampling() const {
-        // The fewest rays along an edge.
-        // Taste: a larger value takes longer where depths are blurred.
-        constexpr int kFewest = 5;
-        const bool thorough = options_.antialiasing == Antialiasing::Reference;
-        int rays = shading_.area_samples;
-        if (!thorough && has_depth_blur(view_.camera))
-            rays = std::max(std::min(rays, kFewest), (rays - 1) / 2 + 1);
-        return {rays, thorough};
+        return povray::light_sampling(shading_, options_.antialiasing, view_.camera);
     }
     SkySampling sky_sampling() const {
         return {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1};
@@ -334,18 +345,15 @@ private:
         return use.hidden == own ? own : static_cast<RayMask>(own | kRadiosityRays);
     }
 
-    /// The lights of everything that is drawn; its numbers are those of the uses that are drawn.
-    light::LightPlan light_plan(const std::vector<Bound>& occluders) {
+    /// The lights of everything that is drawn; its numbers are those of the uses.
+    light::LightPlan light_plan() {
         report_.lights_each = static_cast<double>(report_.lamps);
         if (!plans_lights())
             return {};
         std::vector<light::DrawnThing> drawn;
-        drawn.reserve(occluders.size());
-        for (const OccurrenceUse& use : uses_) {
-            if (includes_.at(use.file).drawn)
-                drawn.push_back(
-                    {includes_.at(use.file).representation, use.world, hidden_in_plan(use)});
-        }
+        drawn.reserve(uses_.size());
+        for (const OccurrenceUse& use : uses_)
+            drawn.push_back({&representation_of(use), use.world, hidden_in_plan(use)});
         light::LightDemands demands;
         demands.grids.pixel_error = options_.light_error.value_or(view_.pixel_error);
         demands.grids.shadow_error = shading_.shadow_error;
@@ -368,29 +376,27 @@ private:
     }
 
     /// The text of everything that is drawn, with the lights of its group around it.
-    std::string grouped_objects(const light::LightPlan& plan,
-                                const std::map<light::GroupLight, std::string>& lights,
+    std::string grouped_objects(const std::map<light::GroupLight, std::string>& lights,
                                 double times) {
         std::string out;
-        std::vector<const OccurrenceUse*> drawn;
-        drawn.reserve(uses_.size());
-        if (plan.empty())
+        if (plan_.empty())
             out.reserve(uses_.size() * kTypicalObject);
         for (const OccurrenceUse& use : uses_) {
             if (!includes_.at(use.file).drawn)
                 continue;
-            drawn.push_back(&use);
+            ++report_.occurrences;
             report_.unseen += use.in_place != 0 ? 1 : 0;
-            if (plan.empty())
+            if (plan_.empty())
                 append_object(out, use, times);
         }
-        report_.occurrences = drawn.size();
-        if (plan.empty())
+        if (plan_.empty())
             return out;
-        std::vector<std::string> groups(plan.groups.size());
-        for (const LitUse& lit : lit_uses(drawn, plan))
-            append_object(lit.group ? groups[*lit.group] : out, lit.use, times, lit.within);
-        return grouped_text(plan, lights, groups) + out;
+        std::vector<std::string> groups(plan_.groups.size());
+        for (const LitUse& lit : lit_uses(uses_, plan_)) {
+            if (includes_.at(lit.use.file).drawn)
+                append_object(lit.group ? groups[*lit.group] : out, lit.use, times, lit.within);
+        }
+        return grouped_text(plan_, lights, groups) + out;
     }
 
     /// Appends an object, or its part `within` a box (world frame).
@@ -421,18 +427,17 @@ private:
         }
         const double times = magnification(view_, occluders);
         bound = magnified(bound, times);
-        const light::LightPlan plan = light_plan(occluders);
         std::string lights;
         if (lit()) {
-            report_.lamp_rays = light::mean_lamp_rays(plan, model_.lights);
+            report_.lamp_rays = light::mean_lamp_rays(plan_, model_.lights);
             report_.sky_lights = sky_.lights.size();
             report_.shadow_rays = static_cast<double>(report_.sky_lights) + report_.lamp_rays +
-                                  light::mean_sun_rays(plan, model_.lights);
+                                  light::mean_sun_rays(plan_, model_.lights);
         }
         const SceneLights scene_lights(view_, occluders, bound, times, shading_, light_sampling(),
                                        problems_);
-        const std::map<light::GroupLight, std::string> names = scene_lights.declare(lights, plan);
-        std::string objects = grouped_objects(plan, names, times);
+        const std::map<light::GroupLight, std::string> names = scene_lights.declare(lights, plan_);
+        std::string objects = grouped_objects(names, times);
         const Camera camera = magnified(view_.camera, times);
         const SceneHead head{view_.pixel_error,    report_.occurrences, times,
                              includes_.refracts(), transparent(),       camera.position};
@@ -440,14 +445,14 @@ private:
         append_camera(out, camera, options_.antialiasing, problems_);
         if (lit()) {
             for (uint32_t i = 0; i < model_.lights.size(); ++i) {
-                if (plan.empty() || !light::is_lamp(model_.lights[i]))
-                    scene_lights.append(out, model_.lights[i], plan.sun_rays(i));
+                if (plan_.empty() || !light::is_lamp(model_.lights[i]))
+                    scene_lights.append(out, model_.lights[i], plan_.sun_rays(i));
             }
-            if (!plan.empty()) {
+            if (!plan_.empty()) {
                 out += "// Of ";
                 append_count(out, report_.lamps);
                 out += " lamps a point is lit by ";
-                append_number(out, plan.lights_each, 3);
+                append_number(out, plan_.lights_each, 3);
                 out += " lights on average, some of which stand for several\n" + lights;
             }
             if (!sky_.lights.empty())
@@ -475,6 +480,9 @@ private:
     PictureNeeds needs_;
     IncludeFiles includes_;
     std::vector<OccurrenceUse> uses_;
+    std::vector<UseLook> looks_;  // by use
+    std::vector<Bound> bounds_;   // by use, world frame
+    light::LightPlan plan_;
     ExportReport report_;
     WrittenSky sky_;
     std::optional<SkyOcclusion> sky_light_;

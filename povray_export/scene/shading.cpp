@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/scene/shading.h"
 
+#include "povray_export/scene/camera_writer.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -93,6 +95,18 @@ Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixe
         shading.bounce_error > 0 ? std::clamp(shading.bounce_error, 0.01, 1.0) : gathering.error;
     out.reflection_error = std::clamp(shading.reflection_error, 1.0, 255.0);
     return out;
+}
+
+LightSampling light_sampling(const Shading& filled_up, Antialiasing antialiasing,
+                             const Camera& camera) {
+    // The fewest rays along an edge.
+    // Taste: a larger value takes longer where depths are blurred.
+    constexpr int kFewest = 5;
+    const bool thorough = antialiasing == Antialiasing::Reference;
+    int rays = filled_up.area_samples;
+    if (!thorough && has_depth_blur(camera))
+        rays = std::max(std::min(rays, kFewest), (rays - 1) / 2 + 1);
+    return {rays, thorough};
 }
 
 int samples_along_side(const Shading& filled_up, Antialiasing antialiasing) {

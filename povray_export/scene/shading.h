@@ -2,6 +2,9 @@
 // Shading: how finely a picture is lit and sampled, so that a rough model is also shaded roughly.
 #pragma once
 
+#include "model/view.h"
+#include "povray_export/lamp/light_writer.h"
+
 #include <cstdint>
 
 namespace lodestone::povray {
@@ -32,6 +35,11 @@ struct Shading {
 
 /// The shading with every count and threshold filled in.
 Shading filled_up(const Shading& shading, Antialiasing antialiasing, double pixel_error);
+
+/// The rays of a light's size in a picture. Where depths are blurred each of 37 samples of a pixel or
+/// more casts its rays to every lamp, so that half of them along an edge are as good.
+LightSampling light_sampling(const Shading& filled_up, Antialiasing antialiasing,
+                             const Camera& camera);
 
 /// How many samples a pixel has along a side, where it has the most.
 int samples_along_side(const Shading& filled_up, Antialiasing antialiasing);

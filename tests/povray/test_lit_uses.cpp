@@ -17,14 +17,10 @@ OccurrenceUse use(uint32_t node, RayMask hidden = 0) {
 
 std::vector<LitUse> lit(const std::vector<OccurrenceUse>& uses,
                         const std::vector<light::LitPiece>& pieces) {
-    std::vector<const OccurrenceUse*> drawn;
-    drawn.reserve(uses.size());
-    for (const OccurrenceUse& one : uses)
-        drawn.push_back(&one);
     light::LightPlan plan;
     plan.groups.resize(3);
     plan.pieces = pieces;
-    return lit_uses(drawn, plan);
+    return lit_uses(uses, plan);
 }
 
 }  // namespace
@@ -69,4 +65,22 @@ TEST(LitUses, WhatThrowsNoShadowHasNoneInParts) {
     ASSERT_EQ(found.size(), 2u);
     EXPECT_EQ(found[0].use.hidden, kShadowRays);
     EXPECT_EQ(found[1].use.hidden, kShadowRays);
+}
+
+TEST(LitUses, LampRaysOfAThingAreTheMeanOfItsParts) {
+    light::LightPlan plan;
+    Light lamp;
+    lamp.kind = LightKind::Point;
+    plan.lights = {lamp, lamp};
+    plan.groups = {{}, {{0, {}}, {1, {}}}};
+    const Box3 whole{{0, 0, 0}, {4, 3, 0}};
+    const Bound bound{{2, 1.5, 0}, 2.5, whole};
+    EXPECT_TRUE(lamp_rays({}, plan).empty());
+    plan.pieces = {{0, 1, {}}, {1, 0, {}}};
+    const double both = 2 * light::shadow_rays(lamp, {});
+    EXPECT_EQ(lamp_rays(std::vector<Bound>(3, bound), plan), (std::vector<double>{both, 0, 0}));
+    // One part is as large as the other: a thing that is cut in two.
+    plan.pieces = {{0, 1, Box3{{-9, -9, -9}, {2, 9, 9}}}, {0, 0, Box3{{2, -9, -9}, {9, 9, 9}}}};
+    EXPECT_NEAR(lamp_rays(std::vector<Bound>(1, bound), plan)[0], both / 2, 1e-9);
+    EXPECT_EQ(lamp_rays(std::vector<Bound>(1, Bound{}), plan)[0], 0);
 }
