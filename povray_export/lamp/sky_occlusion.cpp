@@ -4,9 +4,8 @@
 #include "base/findings_file.h"
 #include "base/parallel.h"
 #include "light/sky/joined_surface.h"
-#include "light/sky/sky_means.h"
 #include "povray_export/lamp/corner_rays.h"
-#include "povray_export/lamp/placement_grades.h"
+#include "povray_export/lamp/placement_means.h"
 #include "povray_export/lamp/sky_things.h"
 
 #include <algorithm>
@@ -21,14 +20,10 @@ namespace {
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
 constexpr uint32_t kBakeVersion = 15;
-// Rays that tell what is around one placement, where placements are few.
-// Taste: more are truer and take longer.
-constexpr int kMeanRays = 128;
-constexpr int kFewestMeanRays = 16;        // Taste: as kMeanRays
-constexpr double kMostMeanRays = 300'000;  // Taste: rays of all placements together
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
+
 class SkyPlanner {
 public:
     SkyPlanner(const Model& model, const choose::Cut& cut, const SkyOcclusionOptions& options,
@@ -38,6 +33,7 @@ public:
           job_(job),
           bakes_(options.file, kSkyVersion),
           all_(model, cut, options.most_triangles, job),
+          placements_(all_),
           surfaces_(model,
                     options.texels ? options.texels : std::make_shared<image::TexelCache>()) {}
 
@@ -47,53 +43,51 @@ public:
             return "There is too much in the scene to find what hides the sky: " + all_.too_much();
         find_wanted();
         choose_rays();
-        for (auto& [key, wanted] : wanted_means_)
-            find_means(key.first, wanted);
-        std::string without_rays;
-        if (!missing_means_.empty() && !ray::available(&without_rays))
-            return "What hides the sky is not found: " + without_rays;
+        placements_.find(bakes_);
         SharedProgress progress(job_, work_of_bake());
-        bake([&] { bake_means(progress); });
-        // Shares of copies depend on the ground that means know.
-        for (auto& [key, wanted] : wanted_shares_)
-            find_shares(key, wanted, progress);
-        if (!missing_.empty() && !ray::available(&without_rays))
+        std::string without_rays;
+        try {
+            if (placements_.missing() && ray::available(&without_rays))
+                placements_.bake(surfaces_, scene(), progress, job_);
+            // Shares of copies depend on the ground that means know.
+            for (auto& [key, wanted] : wanted_shares_)
+                find_shares(key, wanted, progress);
+            if (!missing_.empty() && ray::available(&without_rays))
+                bake_shares(progress);
+        } catch (const Error&) {
+            keep();  // what is finished is not found again
+            throw;
+        }
+        if (!without_rays.empty())
             return "What hides the sky is not found: " + without_rays;
-        bake([&] { bake_shares(progress); });
+        keep();
         light_all();
         return "";
     }
 
     /// Whether anything had to be found.
-    bool baked() const { return !missing_.empty() || !missing_means_.empty(); }
+    bool baked() const { return !missing_.empty() || placements_.missing(); }
     std::vector<SkyLightPtr> lights() { return std::move(lights_); }
     SkyLightPtr mean_of(size_t position) const {
         return position < means_.size() ? even_sky_light(means_[position]) : nullptr;
     }
 
 private:
-    /// A request for the means of all placements of one finest level, or of one stand-in.
-    struct WantedMeans {
-        const Representation* representation = nullptr;
-        bool group = false;  // a stand-in
-        std::vector<Affine> places;
-        light::PlacedMeans found;
-        std::vector<PlacementShade> shades;  // graded
-        Hash key = 0;
-    };
     /// A request for shares: of one surface alone, or of one thing as it is placed.
     struct WantedShares {
         const Representation* representation = nullptr;
         const SkyThing* placed = nullptr;          // null: alone
         const Representation* original = nullptr;  // the finest level; null: it is that
-        const WantedMeans* means = nullptr;        // of its placements; null: alone, and it moves
+        const MeansOfPlacements* means = nullptr;  // null: it stands once, or moves
         Hash key = 0;                              // where it is kept
         /// By triangle, 1: any of the things shows it. Empty: all count as shown.
         std::vector<uint8_t> seen;
         int rays = 0;                                   // of a corner
         int whole_rays = 0;                             // the same where all of it is seen
+        uint64_t work = 0;                              // about, for progress
         std::shared_ptr<const light::SkyShares> found;  // of as many or fewer until it is baked
     };
+
     Hash key_of(const SkyThing& thing, bool once) const {
         Hasher hasher;
         const RepresentationSummary& summary = thing.representation->summary;
@@ -122,15 +116,9 @@ private:
             if (shares_of_[i] != nullptr)
                 note_seen(i, *shares_of_[i]);
             if (!once && !thing.moves)
-                want_means(i);
+                means_of_[i] = placements_.want(thing);
             if (shares_of_[i] != nullptr)
                 shares_of_[i]->means = means_of_[i].first;
-        }
-        for (uint32_t i = 0; i < numbers_.size(); ++i) {
-            const auto wanted =
-                wanted_means_.find({all_.finest_of(all_.leaves()[i]).summary.hash, false});
-            if (wanted != wanted_means_.end())
-                wanted->second.places[numbers_[i]] = all_.leaves()[i].world;
         }
     }
 
@@ -216,7 +204,7 @@ private:
                 wanted.found->seen.empty() ? std::min(wanted.rays, wanted.whole_rays) : wanted.rays;
             if (wanted.found->rays >= static_cast<uint32_t>(rays) &&
                 light::covers(*wanted.found, wanted.seen)) {
-                progress.add(work_of(wanted));
+                progress.add(wanted.work);
                 return;
             }
             wanted.seen.clear();
@@ -229,69 +217,6 @@ private:
     static light::SkyHorizon horizon_of(const WantedShares& wanted) {
         return wanted.placed == nullptr && wanted.means != nullptr ? wanted.means->found.horizon
                                                                    : light::SkyHorizon{};
-    }
-
-    /// The means are those of all placements of the finest level, so that grades do not depend on
-    /// which of them the cut draws; those of a stand-in are of the cut's.
-    void want_means(size_t i) {
-        const SkyThing& thing = all_.things()[i];
-        const Representation& representation = all_.finest_of(thing);
-        WantedMeans& wanted = wanted_means_[{representation.summary.hash, thing.group}];
-        wanted.representation = &representation;
-        wanted.group = thing.group;
-        if (thing.group) {
-            means_of_[i] = {&wanted, wanted.places.size()};
-            wanted.places.push_back(thing.world);
-        } else {
-            means_of_[i] = {&wanted, number_of_leaf(representation.summary.hash, thing.first)};
-        }
-    }
-
-    /// The number of a leaf among those of its finest level.
-    size_t number_of_leaf(Hash hash, uint32_t leaf) {
-        if (numbers_.empty()) {
-            numbers_.resize(all_.leaves().size());
-            std::unordered_map<Hash, uint32_t> counts;
-            for (size_t i = 0; i < all_.leaves().size(); ++i)
-                numbers_[i] = counts[all_.finest_of(all_.leaves()[i]).summary.hash]++;
-        }
-        wanted_means_[{hash, false}].places.resize(all_.placements_of(hash));
-        return numbers_[leaf];
-    }
-
-    /// The rays that tell what is around one placement: as many whatever is known already.
-    int mean_rays() const {
-        return static_cast<int>(
-            limited(kMostMeanRays / static_cast<double>(all_.leaves().size() + 1), kFewestMeanRays,
-                    kMeanRays));
-    }
-
-    void find_means(Hash hash, WantedMeans& wanted) {
-        Hasher hasher;
-        hasher.value(kBakeVersion).value(all_.scene()).value(hash).value(wanted.places.size());
-        hasher.value(mean_rays()).value(wanted.representation->summary.max_error);
-        for (const Affine& world : wanted.places)
-            hash_transform(hasher, world);
-        wanted.key = hasher.result();
-        const auto bytes = bakes_.find(wanted.key);
-        auto found =
-            bytes ? light::PlacedMeans::of_bytes(*bytes, wanted.places.size()) : std::nullopt;
-        if (found)
-            wanted.found = std::move(*found);
-        else
-            missing_means_.push_back(&wanted);
-    }
-
-    /// Does something, and keeps what was found even where it ends early.
-    template <typename Work>
-    void bake(const Work& work) {
-        try {
-            work();
-        } catch (const Error&) {
-            keep();  // what is finished is not found again
-            throw;
-        }
-        keep();
     }
 
     /// All that hides the sky, made when something is to be found.
@@ -312,15 +237,12 @@ private:
     }
 
     /// The rays of a bake, about: two triangles have about one corner.
-    uint64_t work_of(const WantedShares& wanted) const {
-        return 1 + static_cast<uint64_t>(wanted.rays) * seen_of(wanted) / 2;
-    }
-    uint64_t work_of_bake() const {
-        uint64_t work = 1;
-        for (const auto& [key, wanted] : wanted_shares_)
-            work += work_of(wanted);
-        for (const WantedMeans* wanted : missing_means_)
-            work += wanted->places.size() * static_cast<uint64_t>(mean_rays());
+    uint64_t work_of_bake() {
+        uint64_t work = 1 + placements_.work();
+        for (auto& [key, wanted] : wanted_shares_) {
+            wanted.work = 1 + static_cast<uint64_t>(wanted.rays) * seen_of(wanted) / 2;
+            work += wanted.work;
+        }
         return work;
     }
 
@@ -329,8 +251,6 @@ private:
     }
 
     void bake_shares(SharedProgress& progress) {
-        if (missing_.empty())
-            return;
         scene();  // loads what is missing
         std::vector<const Representation*> all;
         for (const WantedShares* wanted : missing_) {
@@ -345,7 +265,7 @@ private:
                 return;
             bake_one(wanted,
                      wanted.original == nullptr ? nullptr : &surfaces_.of(*wanted.original));
-            progress.add(work_of(wanted));
+            progress.add(wanted.work);
         });
         // One after the other, for what they stand for is joined and takes memory.
         for (WantedShares* wanted : missing_) {
@@ -355,7 +275,7 @@ private:
             const std::optional<light::SkySurface> joined = light::joined_surface(
                 surfaces_, occluders_below(*wanted->placed), wanted->placed->world);
             bake_one(*wanted, joined ? &*joined : nullptr);
-            progress.add(work_of(*wanted));
+            progress.add(wanted->work);
         }
     }
 
@@ -387,59 +307,18 @@ private:
         return out;
     }
 
-    void bake_means(SharedProgress& progress) {
-        if (missing_means_.empty())
-            return;
-        const light::SkyScene& around = scene();
-        std::vector<const Representation*> all;
-        for (const WantedMeans* wanted : missing_means_)
-            all.push_back(wanted->representation);
-        surfaces_.add(all, job_);
-        const int rays = mean_rays();
-        for (WantedMeans* wanted : missing_means_) {
-            light::PlacedMeans found;
-            found.means.resize(wanted->places.size());
-            const light::SkySurface& surface = surfaces_.of(*wanted->representation);
-            if (!wanted->group)
-                found.horizon = light::sky_horizon(surface, wanted->places, around);
-            parallel_for(found.means.size(), [&](size_t i) {
-                job_.check();
-                light::SkyRequest request{surface, wanted->places[i], &around,
-                                          wanted->representation->summary.max_error, rays};
-                request.horizon = found.horizon;
-                found.means[i] = mean_sky_shares(request, rays);
-                progress.add(static_cast<uint64_t>(rays));
-            });
-            // The numbers are those that are kept, so that the next picture has the same.
-            auto kept = light::PlacedMeans::of_bytes(found.bytes(), found.means.size());
-            wanted->found = kept ? std::move(*kept) : std::move(found);
-        }
-    }
-
     /// Keeps what was found now.
     void keep() {
         for (const WantedShares* wanted : missing_) {
             if (wanted->found)
                 bakes_.add(wanted->key, wanted->found->bytes());
         }
-        for (const WantedMeans* wanted : missing_means_) {
-            if (!wanted->found.means.empty())
-                bakes_.add(wanted->key, wanted->found.bytes());
-        }
+        placements_.keep(bakes_);
         bakes_.save();
     }
 
     void light_all() {
-        for (auto& [hash, wanted] : wanted_means_) {
-            std::vector<PlacementShade> shades;
-            for (const light::SkyMeans& mean : wanted.found.means) {
-                const double ratio = mean.alone > 0 ? limited(mean.placed / mean.alone, 0, 1) : 1;
-                const glm::dvec3 middle = wanted.representation->summary.bound.box.center();
-                shades.push_back(
-                    {ratio, ratio + glm::dot(mean.slope, middle - mean.middle), mean.slope});
-            }
-            wanted.shades = graded(shades);
-        }
+        placements_.grade();
         lights_.resize(all_.things().size());
         means_.resize(all_.things().size(), 1);
         for (size_t i = 0; i < all_.things().size(); ++i) {
@@ -486,16 +365,14 @@ private:
     const Job& job_;
     FindingsFile bakes_;
     SkyThings all_;
+    PlacementMeans placements_;
     light::SkySurfaces surfaces_;
     std::vector<light::SkyOccluder> occluders_;
     std::optional<light::SkyScene> around_;
-    std::vector<uint32_t> numbers_;  // by leaf
     std::map<Hash, WantedShares> wanted_shares_;
-    std::map<std::pair<Hash, bool>, WantedMeans> wanted_means_;  // with: a stand-in
     std::vector<WantedShares*> missing_;
-    std::vector<WantedMeans*> missing_means_;
-    std::vector<WantedShares*> shares_of_;                   // by thing
-    std::vector<std::pair<WantedMeans*, size_t>> means_of_;  // by thing
+    std::vector<WantedShares*> shares_of_;                               // by thing
+    std::vector<std::pair<const MeansOfPlacements*, size_t>> means_of_;  // by thing
     std::vector<SkyLightPtr> lights_;
     std::vector<double> means_;
 };

@@ -58,6 +58,7 @@ TEST_F(SkyHorizonTest, WhereHalfOfThemFloatItIsAHalf) {
 
 TEST_F(SkyHorizonTest, UpIsAnAxisOfThePlacementsAndThereIsNoneOfThoseThatTumble) {
     std::vector<Affine> places;
+    places.reserve(kApart.size());
     for (const Affine& place : kApart)
         places.push_back(turned(90, {1, 0, 0}, place.offset + glm::dvec3(0, 0, 2)));
     EXPECT_EQ(horizon(box, places, {{ground, {}}}).up, glm::dvec3(0, 1, 0));
