@@ -10,7 +10,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kMeansVersion = 15;
+constexpr uint32_t kMeansVersion = 16;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -99,6 +99,7 @@ light::PlacedMeans PlacementMeans::baked(const MeansOfPlacements& wanted,
                                          const Job& job) const {
     light::PlacedMeans out;
     out.means.resize(wanted.places.size());
+    // Another picture places a stand-in elsewhere, and its shares would have to be found anew.
     if (!wanted.group)
         out.horizon = light::sky_horizon(surface, wanted.places, around);
     parallel_for(out.means.size(), [&](size_t i) {

@@ -19,7 +19,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 15;
+constexpr uint32_t kBakeVersion = 16;
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
@@ -51,7 +51,9 @@ public:
                 placements_.bake(surfaces_, scene(), progress, job_);
             // Shares of copies depend on the ground that means know.
             for (auto& [key, wanted] : wanted_shares_)
-                find_shares(key, wanted, progress);
+                find_shares(key, wanted);
+            if (baked())
+                progress.add(kept_work_);
             if (!missing_.empty() && ray::available(&without_rays))
                 bake_shares(progress);
         } catch (const Error&) {
@@ -184,7 +186,7 @@ private:
 
     /// Finds what was kept, or lists what is to be found: the shares of what the picture shows, and
     /// once another picture shows more those of all, so that many pictures do not begin anew.
-    void find_shares(Hash key, WantedShares& wanted, SharedProgress& progress) {
+    void find_shares(Hash key, WantedShares& wanted) {
         const light::SkyHorizon horizon = horizon_of(wanted);
         wanted.key = Hasher()
                          .value(key)
@@ -204,7 +206,7 @@ private:
                 wanted.found->seen.empty() ? std::min(wanted.rays, wanted.whole_rays) : wanted.rays;
             if (wanted.found->rays >= static_cast<uint32_t>(rays) &&
                 light::covers(*wanted.found, wanted.seen)) {
-                progress.add(wanted.work);
+                kept_work_ += wanted.work;
                 return;
             }
             wanted.seen.clear();
@@ -213,7 +215,7 @@ private:
         missing_.push_back(&wanted);
     }
 
-    /// What lies below a thing alone.
+    /// The sky below a thing alone.
     static light::SkyHorizon horizon_of(const WantedShares& wanted) {
         return wanted.placed == nullptr && wanted.means != nullptr ? wanted.means->found.horizon
                                                                    : light::SkyHorizon{};
@@ -371,6 +373,7 @@ private:
     std::optional<light::SkyScene> around_;
     std::map<Hash, WantedShares> wanted_shares_;
     std::vector<WantedShares*> missing_;
+    uint64_t kept_work_ = 0;                                             // of shares that were kept
     std::vector<WantedShares*> shares_of_;                               // by thing
     std::vector<std::pair<const MeansOfPlacements*, size_t>> means_of_;  // by thing
     std::vector<SkyLightPtr> lights_;

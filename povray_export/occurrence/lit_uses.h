@@ -21,8 +21,7 @@ struct LitUse {
 /// The uses that draw `drawn`, which a plan numbers so. A thing in several parts throws its shadow as
 /// a whole, outside of all groups, and its parts throw none: a ray to a lamp would meet every part
 /// whose box it passes.
-std::vector<LitUse> lit_uses(std::span<const OccurrenceUse> drawn,
-                             const light::LightPlan& plan);
+std::vector<LitUse> lit_uses(std::span<const OccurrenceUse> drawn, const light::LightPlan& plan);
 
 /// The shadow rays to lamps of groups that a point of each thing takes, about: the mean over its
 /// parts, by the squares of their sizes. `bounds`: of the things, world frame.

@@ -74,7 +74,9 @@ public:
                  cut_.chosen.size(), " chosen occurrences");
         make_folder(options_.folder / "r");
         if (!options_.covered_only)
-            sky_ = write_sky(view_world(), sky_sampling(), options_.folder, problems_);
+            sky_ = write_sky(model_.world,
+                             {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1},
+                             options_.folder, problems_);
         find_needs();
         find_sky_light();
         collect();
@@ -153,16 +155,21 @@ private:
     /// Hides representations from classes that meet something else in their place, which must be
     /// there.
     void hide_replaced() {
-        std::vector<RayMask> replaced(cut_.nodes.size(), 0);
-        for (const OccurrenceUse& use : uses_) {
-            if (includes_.at(use.file).drawn)
-                replaced[use.node] |= use.in_place;
-        }
-        replaced = replaced_ray_classes(cut_, std::move(replaced));
+        const std::vector<RayMask> replaced =
+            replaced_by([&](const OccurrenceUse& use) { return includes_.at(use.file).drawn; });
         for (OccurrenceUse& use : uses_) {
             if (use.in_place == 0)
                 use.hidden |= replaced[use.node];
         }
+    }
+
+    /// The classes, for each node, that meet one of some uses in its place.
+    template <typename Some>
+    std::vector<RayMask> replaced_by(const Some& some) const {
+        std::vector<RayMask> replaced(cut_.nodes.size(), 0);
+        for (const OccurrenceUse& use : uses_)
+            replaced[use.node] |= some(use) ? use.in_place : RayMask{0};
+        return replaced_ray_classes(cut_, std::move(replaced));
     }
 
     /// The path of a node's placements. The root has none and is called like its object.
@@ -200,7 +207,8 @@ private:
         // mean of the picture.
         // Taste: a larger value draws gloss better where lamps shine, and takes longer there.
         constexpr double kFewLampRays = 4;
-        const double mean = plan_.empty() ? 0 : light::mean_lamp_rays(plan_, model_.lights);
+        const bool many = report_.lamps >= light::kManyLamps && !plan_.empty();
+        const double mean = many ? light::mean_lamp_rays(plan_, model_.lights) : 0;
         const std::vector<double> rays = lamp_rays(bounds_, plan_);
         for (size_t i = 0; i < uses_.size(); ++i) {
             OccurrenceUse& use = uses_[i];
@@ -212,16 +220,16 @@ private:
             const bool shadows =
                 textures && lit() && shading_.bounces == 0 && use.in_place == 0 &&
                 ((cut && !needs_.seen(use.position)) || pixels_.only_shadows(bound));
-            use.file =
-                includes_.add(representation,
-                              {.textures = textures,
-                               .uvs = options_.uvs,
-                               .coarse_crowds = view_.pixel_error > 0,
-                               .sky = textures && !shadows ? sky : nullptr,
-                               .few_textures = textures && std::max(rays[i], mean) >= kFewLampRays,
-                               .only_shadows = shadows},
-                              outline_of(pixel),
-                              cut ? needs_.triangles(use.position) : std::span<const uint8_t>{});
+            use.file = includes_.add(
+                representation,
+                {.textures = textures,
+                 .uvs = options_.uvs,
+                 .coarse_crowds = view_.pixel_error > 0,
+                 .sky = textures && !shadows ? sky : nullptr,
+                 .few_textures = textures && many && std::max(rays[i], mean) >= kFewLampRays,
+                 .only_shadows = shadows},
+                outline_of(pixel),
+                cut ? needs_.triangles(use.position) : std::span<const uint8_t>{});
             if (includes_.at(use.file).pictured)
                 includes_.note_texel(use.file, shading_.texture_error * pixel);
         }
@@ -320,40 +328,33 @@ private:
         ++report_.written;
     }
 
-    bool transparent() const { return options_.covered_only || view_world().transparent; }
+    bool transparent() const { return options_.covered_only || model_.world.transparent; }
     static bool lit(const ExportOptions& options) {
         return !options.covered_only && !options.false_color;
     }
     bool lit() const { return lit(options_); }
-    bool plans_lights() const { return lit() && options_.light_error != 0.0; }
-    const World& view_world() const { return model_.world; }
 
     LightSampling light_sampling() const {
         return povray::light_sampling(shading_, options_.antialiasing, view_.camera);
     }
-    SkySampling sky_sampling() const {
-        return {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1};
-    }
 
-    /// The classes that an object is hidden from in the plan. Lights are chosen by what the camera
-    /// sees, as if all rays met that.
-    RayMask hidden_in_plan(const OccurrenceUse& use) const {
-        const RayMask own = cut_.nodes[use.node].hidden;
-        if (use.in_place != 0)
-            return kAllRays;
-        // An object with flags is not parted; this flag says nothing to lights.
-        return use.hidden == own ? own : static_cast<RayMask>(own | kRadiosityRays);
-    }
-
-    /// The lights of everything that is drawn; its numbers are those of the uses.
+    /// The lights of all uses, by their numbers, also of those of which nothing is drawn. They are
+    /// chosen by what the camera sees, as if all rays met that.
     light::LightPlan light_plan() {
         report_.lights_each = static_cast<double>(report_.lamps);
-        if (!plans_lights())
+        if (!lit() || options_.light_error == 0.0)
             return {};
         std::vector<light::DrawnThing> drawn;
         drawn.reserve(uses_.size());
-        for (const OccurrenceUse& use : uses_)
-            drawn.push_back({&representation_of(use), use.world, hidden_in_plan(use)});
+        const std::vector<RayMask> replaced =
+            replaced_by([](const OccurrenceUse&) { return true; });
+        for (const OccurrenceUse& use : uses_) {
+            RayMask hidden = use.in_place != 0 ? kAllRays : cut_.nodes[use.node].hidden;
+            // An object with flags is not parted; this flag says nothing to lights.
+            if ((replaced[use.node] & ~hidden) != 0)
+                hidden |= kRadiosityRays;
+            drawn.push_back({&representation_of(use), use.world, hidden});
+        }
         light::LightDemands demands;
         demands.grids.pixel_error = options_.light_error.value_or(view_.pixel_error);
         demands.grids.shadow_error = shading_.shadow_error;

@@ -3,7 +3,6 @@
 // more than once, and is found once.
 #include "base/findings_file.h"
 #include "base/parallel.h"
-#include "povray/mask_cards.h"
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_occlusion.h"
@@ -485,19 +484,4 @@ TEST_F(SkyOcclusionScenes, ABoxUnderARoofIsDarkerAsAWhole) {
     EXPECT_LT(light.of(0)->factor, 0.75);
     EXPECT_GT(light.of(2)->factor, 0.95);
     EXPECT_NE(light.of(0)->hash, light.of(2)->hash);
-}
-
-// Leaves had one shade each, of a large card too.
-TEST_F(SkyOcclusionScenes, PartsOfACutLeafHaveTheShadeOfTheirPlaces) {
-    const ObjectIndex leaf_card = builder.mesh(card(), {builder.material(leaf(disk()))});
-    builder.place(leaf_card);
-    builder.place(builder.mesh(shapes::box({-9, -9, 0.3}, {0.2, 9, 0.4})));
-    builder.place(builder.mesh(shapes::quad(40, 40)), at(-20, -20, -0.01));
-    write("scene", builder.finish());
-    const std::string text = includes("scene");
-    std::set<std::string> shades;
-    const std::regex ambient("ambient rgb <[^>]*>");
-    for (std::sregex_iterator i(text.begin(), text.end(), ambient), end; i != end; ++i)
-        shades.insert(i->str());
-    EXPECT_GT(shades.size(), 6u);
 }

@@ -53,8 +53,8 @@ SkyHorizon sky_horizon(const SkySurface& surface, std::span<const Affine> places
     const ray::FlushDenormals fast;
     const size_t count = std::min(places.size(), kMostPlaces);
     const glm::dvec3 upward(0.0, 0.0, 1.0);
-    double seen = 0;
-    double passed = 0;
+    int seen = 0;
+    int passed = 0;
     for (size_t i = 0; i < count; ++i) {
         SkyRequest request{surface, places[i * places.size() / count], &scene};
         request.horizon.up = up;
@@ -79,14 +79,16 @@ SkyHorizon sky_horizon(const SkySurface& surface, std::span<const Affine> places
                             both && k % 2 == 1);
             if (!ray.open || !sampler.down(ray) || sampler.hidden_alone(ray))
                 continue;
+            const bool free = !sampler.hidden(ray, blocker);
             // From under the ground there is always sky below, and nobody looks.
-            if (scene.first_block(ray.from_world, upward).back)
+            if (free && scene.first_block(ray.from_world, upward).back)
                 continue;
-            passed += placed->area;
-            seen += sampler.hidden(ray, blocker) ? 0 : placed->area;
+            ++passed;
+            seen += free ? 1 : 0;
         }
     }
-    return {up, passed > 0 ? std::round(kSteps * seen / passed) / kSteps : 1};
+    const double below = passed > 0 ? std::round(kSteps * seen / passed) / kSteps : 1;
+    return below < 1 ? SkyHorizon{up, below} : SkyHorizon{};
 }
 
 }  // namespace lodestone::light

@@ -22,8 +22,8 @@ struct SkyHorizon {
 
 /// The horizon of a surface that stands at all of `places`: of their rays below it, and of these as
 /// far as the surface alone lets them pass, those that nothing of `scene` hides, in quarters, so that
-/// a thing more in the scene seldom changes it. Without ground where placements are turned upside
-/// down, or lie on their sides, as often as not. cost: at most 1024 rays
+/// a thing more in the scene seldom changes it. There is no ground where the placements do not all
+/// stand about upright. cost: at most 3,072 rays, and a SkySampler for each of 64 placements
 SkyHorizon sky_horizon(const SkySurface& surface, std::span<const Affine> places,
                        const SkyScene& scene);
 

@@ -124,7 +124,7 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         const SkySampler::SkyRay ray = sampler.ray(place, both && i % 2 == 1);
         const double light = ray.open ? sampler.light(ray) : 0;
         const double alone = light > 0 && !sampler.hidden_alone(ray) ? light : 0;
-        // Of some of the sky below there is as much where nothing hides it, on the average.
+        // A placement sees all or nothing of the sky below, on the average as much.
         const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
         all.placed += weight * seen;
         all.alone += weight * alone;

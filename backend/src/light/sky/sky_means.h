@@ -28,7 +28,7 @@ struct PlacedMeans {
     SkyHorizon horizon;  // that they were found with
     std::vector<SkyMeans> means;
 
-    /// As bytes that are kept, and back; none where they are damaged.
+    /// Bytes that are kept, and back; none where they are damaged.
     std::string bytes() const;
     static std::optional<PlacedMeans> of_bytes(std::string_view bytes, size_t count);
 };

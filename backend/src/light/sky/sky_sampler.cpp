@@ -32,6 +32,9 @@ constexpr double kAboveRounding = 4.8e-7;
 // Taste: a smaller value tells better how uneven a mesh's leaves are lit, and less about corners. It is
 // odd, for of the sequence every fourth point lies in the same quarter of a triangle.
 constexpr uint32_t kAgain = 5;
+// The rays of a triangle from which on it does so.
+// Taste: fewer do not tell its sides apart either, by which places must be lit otherwise.
+constexpr int kFewestAgain = 8;
 // How far on both sides of a level its original is looked for, in parts of the level's error.
 // Law: the level is nowhere farther from it, and twice is a margin.
 constexpr double kReach = 2;
@@ -155,7 +158,7 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
             inside = inside || (!both && own == 0 && one.open && light(one) > 0 &&
                                 meets_near_back(one, reach));
         }
-        if (both && number % kAgain == 0) {
+        if (both && rays >= kFewestAgain && number % kAgain == 0) {
             const SkyPlace other = again(place, uint64_t{triangle} << 32u | number);
             const double front_again = this->seen(ray(other, false), blocker);
             const double back_again = this->seen(ray(other, true), blocker);
@@ -310,7 +313,8 @@ void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangl
     for (int i = 0; i < rays; ++i) {
         const SkyRay ray =
             this->ray(place(mesh, triangle, placed, static_cast<uint32_t>(i), near), true);
-        const bool free = ray.open && ray.direction.z > 0 && !hidden(ray, blocker);
+        const bool above = request_.around != nullptr ? ray.direction.z > 0 : !down(ray);
+        const bool free = ray.open && above && !hidden(ray, blocker);
         for (size_t corner = 0; corner < 3; ++corner) {
             weights[corner] += ray.weights[corner];
             seen[corner] += free ? ray.weights[corner] : 0;

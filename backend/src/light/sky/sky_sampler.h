@@ -34,7 +34,7 @@ struct SkyRequest {
     std::span<const uint8_t> seen = {};
     /// The shares that were found for fewer seen triangles, whose splits are kept. Null: none were.
     const SkyShares* known = nullptr;
-    /// Of the surface alone: how much of the sky below it counts.
+    /// How much of the sky below counts, for the surface alone.
     SkyHorizon horizon = {};
 };
 
@@ -46,7 +46,7 @@ struct TriangleShares {
     /// The weights of rays that begin inside of something opaque, which are not in the others.
     std::array<double, 3> inside_rays{};
     bool inside = false;  // true: all of it lies inside of something opaque
-    /// Of rays that were cast once more from the places of leaves, to the same sides: how many there
+    /// The rays that were cast once more from the places of leaves, to the same sides: how many there
     /// are, what they saw, and the same times what the first ones saw.
     double again = 0;
     double again_seen = 0;

@@ -53,6 +53,36 @@ TEST_F(CornerSharesTest, ALeafIsAsLightAsThePlacesThatAreSeenOfIt) {
     EXPECT_GT(mean(60, true), 0.75);
 }
 
+// Cards that the picture does not show, with two rays each, told that all were lit unevenly.
+TEST_F(CornerSharesTest, WhatIsNotSeenTellsNothingOfPlaces) {
+    Material leaf;
+    leaf.alpha = 0.99;
+    leaf.alpha_mode = AlphaMode::Blend;
+    Mesh mesh = squares(400, 1, 0);
+    for (glm::vec3& at : mesh.positions)  // upright, on the ground: each side sees half of the sky
+        at = {at.x, 0, at.y};
+    const ObjectIndex cards = builder.mesh(mesh, {builder.material(leaf)});
+    const ObjectIndex ground = builder.mesh(shapes::quad(4000, 4000));
+    // And one of the sides nothing, in a corner.
+    const ObjectIndex wall = builder.mesh(shapes::box({-2000, -1, -1}, {2000, -0.02, 2000}));
+    const SkyPlace place(
+        *this, {{cards, {}}, {ground, {glm::dmat3(1.0), {-2000, -2000, -0.02}}}, {wall, {}}});
+    std::vector<uint8_t> seen(mesh.triangles.size(), 0);
+    std::fill(seen.begin(), seen.begin() + 40, uint8_t{1});
+    SkyRequest request{place.surfaces.of(finest(cards)), {}, &*place.scene, 0, 128, 0};
+    const SkyShares all = sky_shares(request, {});
+    request.seen = seen;
+    const SkyShares some = sky_shares(request, {});
+    double of_all = 0;
+    double of_some = 0;
+    for (size_t i = 0; i < 60; ++i) {
+        of_all += share_of_byte(all.corners[i]) / 60;
+        of_some += share_of_byte(some.corners[i]) / 60;
+    }
+    EXPECT_NEAR(of_all, 0.5, 0.05);
+    EXPECT_NEAR(of_some, of_all, 0.05);
+}
+
 TEST_F(CornerSharesTest, LeavesThatAreLitEvenlyStayAsTheyAre) {
     EXPECT_NEAR(mean(60, true, false), 1, 0.01);
     // Of one card the rays are too few to tell.

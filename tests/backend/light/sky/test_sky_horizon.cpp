@@ -74,6 +74,25 @@ TEST_F(SkyHorizonTest, PlacesThatAreNoNumbersOrFlatHaveNone) {
         EXPECT_EQ(horizon(box, {bad, bad}, {{ground, {}}}).below, 1);
 }
 
+TEST_F(SkyHorizonTest, AllOfTheSurfaceCountsByItsArea) {
+    // A thousand small squares stand on a table, and beside it floats a large one.
+    Mesh mesh = shapes::quad(10, 10);
+    for (glm::vec3& at : mesh.positions)
+        at.z = 1;
+    for (int i = 0; i < 1000; ++i) {
+        const auto first = static_cast<uint32_t>(mesh.positions.size());
+        for (const glm::vec3& at : shapes::quad(1, 1).positions)
+            mesh.positions.push_back(at + glm::vec3(20 + 2 * (i % 40), 2 * (i / 40), 1));
+        for (const Triangle& t : shapes::quad(1, 1).triangles)
+            mesh.triangles.emplace_back(first + t);
+    }
+    for (Triangle& t : mesh.triangles)
+        std::swap(t.y, t.z);  // all face down
+    const ObjectIndex thing = builder.mesh(mesh);
+    const ObjectIndex table = builder.mesh(shapes::box({15, -900, 0}, {900, 900, 0.9}));
+    EXPECT_EQ(horizon(thing, {{}}, {{table, {}}}).below, 0);
+}
+
 // The tops of copies were as much darker as the ground hid of the sky under them.
 TEST_F(SkyHorizonTest, CopiesOnTheGroundAreAsLightAsTheyAreAlone) {
     const Affine above = at(1000, 1000, 0.05);
