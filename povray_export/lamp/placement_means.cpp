@@ -24,20 +24,21 @@ std::pair<const MeansOfPlacements*, size_t> PlacementMeans::want(const SkyThing&
     MeansOfPlacements& wanted = wanted_[{representation.summary.hash, thing.group}];
     wanted.representation = &representation;
     wanted.group = thing.group;
-    if (!thing.group)
-        return {&wanted, number_of_leaf(representation.summary.hash, thing.first)};
+    if (!thing.group) {
+        wanted.places.resize(all_.placements_of(representation.summary.hash));
+        return {&wanted, number_of_leaf(thing.first)};
+    }
     wanted.places.push_back(thing.world);
     return {&wanted, wanted.places.size() - 1};
 }
 
-size_t PlacementMeans::number_of_leaf(Hash hash, uint32_t leaf) {
+size_t PlacementMeans::number_of_leaf(uint32_t leaf) {
     if (numbers_.empty()) {
         numbers_.resize(all_.leaves().size());
         std::unordered_map<Hash, uint32_t> counts;
         for (size_t i = 0; i < all_.leaves().size(); ++i)
             numbers_[i] = counts[all_.finest_of(all_.leaves()[i]).summary.hash]++;
     }
-    wanted_[{hash, false}].places.resize(all_.placements_of(hash));
     return numbers_[leaf];
 }
 

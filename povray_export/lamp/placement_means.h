@@ -47,7 +47,8 @@ public:
     void grade();
 
 private:
-    size_t number_of_leaf(Hash hash, uint32_t leaf);
+    /// The number of a leaf among those of its finest level.
+    size_t number_of_leaf(uint32_t leaf);
     /// The rays that tell what is around one placement: as many whatever is known already.
     int rays() const;
     light::PlacedMeans baked(const MeansOfPlacements& wanted, const light::SkySurface& surface,

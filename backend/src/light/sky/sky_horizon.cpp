@@ -47,8 +47,7 @@ glm::dvec3 upright(std::span<const Affine> places) {
 SkyHorizon sky_horizon(const SkySurface& surface, std::span<const Affine> places,
                        const SkyScene& scene) {
     const glm::dvec3 up = upright(places);
-    const std::vector<double>& areas = surface.areas;
-    if (up == glm::dvec3(0.0) || areas.empty() || !(areas.back() > 0))
+    if (up == glm::dvec3(0.0) || !(surface.area() > 0))
         return {};
     const ray::FlushDenormals fast;
     const size_t count = std::min(places.size(), kMostPlaces);
@@ -64,12 +63,11 @@ SkyHorizon sky_horizon(const SkySurface& surface, std::span<const Affine> places
         for (size_t k = 0; k < kRaysOfPlace; ++k) {
             // Each placement asks at other points of the surface.
             const size_t number = k * count + i;
-            const double at = areas.back() * (static_cast<double>(number) + 0.5) /
-                              static_cast<double>(count * kRaysOfPlace);
-            const auto triangle = static_cast<size_t>(
-                std::lower_bound(areas.begin(), areas.end(), at) - areas.begin());
-            const auto placed =
-                triangle < areas.size() ? sampler.placed(*surface.mesh, triangle) : std::nullopt;
+            const size_t triangle = surface.triangle_at((static_cast<double>(number) + 0.5) /
+                                                        static_cast<double>(count * kRaysOfPlace));
+            const auto placed = triangle < surface.areas.size()
+                                    ? sampler.placed(*surface.mesh, triangle)
+                                    : std::nullopt;
             if (!placed)
                 continue;
             const bool both = !surface.opaque_slot(surface.mesh->slot(triangle));

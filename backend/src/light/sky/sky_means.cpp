@@ -93,9 +93,8 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     const SkySampler sampler(request);
     const Mesh& mesh = *request.surface.mesh;
     const std::vector<double>& areas = request.surface.areas;
-    const double sum = areas.empty() ? 0 : areas.back();
     SkyMeans out;
-    if (!(sum > 0) || rays < 1)
+    if (!(request.surface.area() > 0) || rays < 1)
         return out;
     const ray::FlushDenormals fast;
     MeanSums all;
@@ -105,9 +104,7 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     uint32_t blocker = ray::PlacedScenes::kNothing;
     uint32_t near = ray::kNoTriangle;
     for (int i = 0; i < rays; ++i) {
-        const double area = sum * (i + 0.5) / rays;
-        const size_t triangle =
-            static_cast<size_t>(std::lower_bound(areas.begin(), areas.end(), area) - areas.begin());
+        const size_t triangle = request.surface.triangle_at((i + 0.5) / rays);
         if (triangle >= areas.size())
             continue;
         const std::optional<SkySampler::PlacedTriangle> placed = sampler.placed(mesh, triangle);

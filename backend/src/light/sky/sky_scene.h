@@ -6,6 +6,7 @@
 #include "model/model.h"
 #include "ray/placed_scenes.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -26,6 +27,12 @@ struct SkySurface {
     std::vector<uint32_t> materials;   // by slot, of the model
     std::vector<double> areas;         // of each triangle and all before it
 
+    double area() const { return areas.empty() ? 0 : areas.back(); }
+    /// The triangle at a part of the area, 0...1; a number of none at its end.
+    size_t triangle_at(double part) const {
+        return static_cast<size_t>(std::lower_bound(areas.begin(), areas.end(), part * area()) -
+                                   areas.begin());
+    }
     bool opaque_slot(uint16_t slot) const {
         return slot >= see_through.size() || see_through[slot] == 0;
     }
