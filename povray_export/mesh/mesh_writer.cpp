@@ -36,6 +36,14 @@ constexpr size_t kMostInLargeBoxes = 96;
 // The mean share of a triangle's box in the mesh's, as areas, from which a box is large.
 // Fitted: at 0.15 (balls of 24 triangles) both take as long, at 0.23 (cones) the tree takes longer.
 constexpr double kLargeBox = 0.2;
+// The size, at most, of meshes whose corners have textures of their own, in the units that they are
+// written in. POV-Ray weighs such textures by quotients of determinants (areas, as an axis sees
+// them) and takes the first that is over 1e-5 in these units. A wall that stands upright has none
+// from above, but floats leave one of some 1e-7 times the size and the triangle's length: over
+// 1e-5, that noise is taken, and the wall is patchy.
+// Law: 4 x 4 x 2e-7 is below 1e-5. Triangles shorter than 0.003, a thousandth of the mesh, have the
+// mean of their corners' textures.
+constexpr double kWeighedSize = 4;
 
 using Point = std::array<int64_t, 3>;
 
@@ -140,10 +148,29 @@ public:
         }
         if (kept_.size() <= kFew || (kept_.size() <= kMostInLargeBoxes && has_large_boxes()))
             out += "hierarchy off\n";
+        if (unit_ != 1 || middle_ != glm::dvec3(0)) {
+            out += "scale ";
+            append_number(out, unit_);
+            out += " translate ";
+            append_vector(out, middle_);
+            out += '\n';
+        }
         out += "}\n";
     }
 
 private:
+    /// Chooses the units that the mesh is written in; see kWeighedSize.
+    void choose_units(const Box3& box) {
+        if (textures_ == nullptr || !textures_->differ_in_triangles())
+            return;
+        const glm::dvec3 size = box.size();
+        const double largest = std::max({size.x, size.y, size.z});
+        if (!(largest > 0))
+            return;
+        unit_ = std::exp2(std::ceil(std::log2(largest / kWeighedSize)));
+        middle_ = glm::dvec3(glm::vec3(box.low + size / 2.0));
+    }
+
     bool has_large_boxes() const {
         const auto area = [](const glm::dvec3& size) {
             return size.x * size.y + size.y * size.z + size.z * size.x;
@@ -178,22 +205,32 @@ private:
         }
         if (box.empty())
             return;
-        const glm::dvec3 size = box.size();
-        const glm::dvec3 far = glm::max(glm::abs(box.low), glm::abs(box.high));
+        choose_units(box);
+        const glm::dvec3 far_out = glm::max(glm::abs(box.low), glm::abs(box.high));
+        const glm::dvec3 low = in_units(box.low);
+        const glm::dvec3 high = in_units(box.high);
+        const glm::dvec3 size = high - low;
+        const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
         lattice_ = DecimalLattice(kPositionPrecision * std::max({size.x, size.y, size.z}),
                                   std::max({far.x, far.y, far.z}));
         narrow_ = true;  // no product of two differences leaves 64 bits
         for (int i = 0; i < 3; ++i)
-            narrow_ = narrow_ && lattice_.round(box.high[i]) - lattice_.round(box.low[i]) < 1 << 30;
+            narrow_ = narrow_ && lattice_.round(high[i]) - lattice_.round(low[i]) < 1 << 30;
         points_.resize(mesh_.positions.size());
         for (size_t i = 0; i < points_.size(); ++i) {
             check_job_sometimes(i);
             const glm::dvec3 at(mesh_.positions[i]);
             // A point that no triangle uses may be anything, and is never written.
-            if (glm::all(glm::lessThanEqual(glm::abs(at), far)))
-                points_[i] = {lattice_.round(at.x), lattice_.round(at.y), lattice_.round(at.z)};
+            if (glm::all(glm::lessThanEqual(glm::abs(at), far_out))) {
+                const glm::dvec3 point = in_units(at);
+                points_[i] = {lattice_.round(point.x), lattice_.round(point.y),
+                              lattice_.round(point.z)};
+            }
         }
     }
+
+    /// A position in the units that are written.
+    glm::dvec3 in_units(const glm::dvec3& position) const { return (position - middle_) / unit_; }
 
     void keep_triangles() {
         std::vector<uint8_t> used(mesh_.positions.size(), 0);
@@ -388,6 +425,8 @@ private:
     const MeshTextures* textures_;
     WrittenTriangles written_;
     const Job& job_;
+    double unit_ = 1;  // of what is written
+    glm::dvec3 middle_{0};
     DecimalLattice lattice_{1, 1};
     DecimalLattice normal_lattice_{kNormalPrecision, 1};
     DecimalLattice uv_lattice_{kUvPrecision, 1};
