@@ -6,9 +6,10 @@
 #include "choose/criterion.h"
 #include "choose/view_pyramid.h"
 #include "geometry/part_tree.h"
+#include "light/seen/least_size.h"
+#include "light/seen/random_place.h"
 #include "light/seen/shadow_reaches.h"
 #include "light/seen/sight_scene.h"
-#include "measure/visible/convex_bound.h"
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -23,18 +24,21 @@ namespace lodestone::light {
 namespace {
 
 // The rays through a pixel, and through all pixels together.
-// Taste: more find smaller things behind gaps, for 3 to 10 us each with their shadows.
-constexpr double kRaysOfPixel = 1;
+// Taste: more find smaller things behind gaps, for 3 to 10 us each with their shadows; with half as
+// many the sky shows between trees where more trees are.
+constexpr double kRaysOfPixel = 0.5;
 constexpr double kMostRays = 1 << 20;  // Taste: as kRaysOfPixel
-// The width of a part, in distances between rays: a part of which an eighth is seen is met.
+constexpr size_t kShadedRays = 2;  // Taste: as kRaysOfPixel; shadows are looked for of each second
+// The width of a part, in distances between rays: a part of which a quarter is seen is met.
 // Taste: a larger value leaves out less, a smaller one misses more.
 constexpr double kPartWidth = 6;
 // The rays toward a part that no ray through the picture met, and from it along lights; fewer, but one,
 // where all parts together would have more than the most.
 // Taste: more find parts of which less is seen.
-constexpr int kAims = 8;
-constexpr int kShadowAims = 4;         // Taste: as kAims
+constexpr int kAims = 4;
+constexpr int kShadowAims = 2;         // Taste: as kAims
 constexpr size_t kMostAims = 1 << 21;  // Taste: some seconds
+constexpr int kMostTries = 4;          // Taste: places of a part for each ray toward it
 // The pixels of a part, an eighth of which is seen, that rays through each miss in one of e cases.
 // Law: one ray is expected to meet it.
 constexpr double kOftenMissed = 8;
@@ -46,21 +50,6 @@ constexpr double kMostThingTests = 1e7;  // Taste: as kMostPlaceTests
 // The least part of its shadow's size that a thing near a lamp counts as.
 // Taste: a smaller value takes meshes with a lamp in them apart further.
 constexpr double kNearLamp = 0.125;
-
-/// The least of some sizes, from any thread.
-class LeastSize {
-public:
-    void note(double size) {
-        double known = least_.load(std::memory_order_relaxed);
-        while (size < known &&
-               !least_.compare_exchange_weak(known, size, std::memory_order_relaxed)) {
-        }
-    }
-    double value() const { return least_.load(std::memory_order_relaxed); }
-
-private:
-    std::atomic<double> least_{kInfinity};
-};
 
 class SeenSearch {
 public:
@@ -134,21 +123,22 @@ private:
                     (static_cast<double>(column) + random.uniform()) / static_cast<double>(columns);
                 const double y =
                     (static_cast<double>(row) + random.uniform()) / static_cast<double>(rows);
-                follow(sight_ray(view_, x, y), picker, random);
+                const bool shaded = (row + column) % kShadedRays == 0;
+                follow(sight_ray(view_, x, y), shaded, picker, random);
             }
         });
     }
 
-    /// Notes what a ray meets, in mirrors too.
-    void follow(const SightRay& ray, LightPicker& picker, PcgRandom& random) {
+    /// Notes what a ray meets, in mirrors too, and, of a shaded one, what throws shadows there.
+    void follow(const SightRay& ray, bool shaded, LightPicker& picker, PcgRandom& random) {
         std::optional<SightWalk> walk = SightWalk{ray.origin, ray.direction};
         for (int mirrors = 0; walk; ++mirrors)
-            walk = follow(*walk, mirrors < kMostMirrors, picker, random);
+            walk = follow(*walk, mirrors < kMostMirrors, shaded, picker, random);
     }
 
     /// Notes what a walk meets; returns how it goes on from a mirror, if it does and `may_turn`.
-    std::optional<SightWalk> follow(const SightWalk& walk, bool may_turn, LightPicker& picker,
-                                    PcgRandom& random) {
+    std::optional<SightWalk> follow(const SightWalk& walk, bool may_turn, bool shaded,
+                                    LightPicker& picker, PcgRandom& random) {
         std::vector<SightCrossing> crossings;
         scene_.cross(walk, crossings);
         if (!crossings.empty() && walk.way == 0)  // from the eye
@@ -157,10 +147,8 @@ private:
             note(at.drawn, at.triangle, kSeen);
             if (at.bends)
                 bends_ = true;
-            const SightNormals normals =
-                sight_normals(scene_.mesh(at.drawn), drawn_[at.drawn].world, at.triangle, at.u,
-                              at.v, walk.direction);
-            if (normals.any)
+            const SightNormals normals = normals_at(at, walk);
+            if (normals.any && shaded)
                 shade(at, normals, picker, random);
             // Some rays go on through what is half clear, and some are mirrored.
             if (!at.ends && !(at.mirrors && random.uniform() < 0.5))
@@ -174,6 +162,11 @@ private:
             return SightWalk{origin, direction, kInfinity, kReflectionRays, at.way};
         }
         return {};
+    }
+
+    SightNormals normals_at(const SightCrossing& at, const SightWalk& walk) const {
+        return sight_normals(scene_.mesh(at.drawn), drawn_[at.drawn].world, at.triangle, at.u, at.v,
+                             walk.direction);
     }
 
     /// Notes what hides lights from a place that is seen.
@@ -277,20 +270,6 @@ private:
         return walk;
     }
 
-    glm::dvec3 point_on(uint32_t drawn, uint32_t triangle, PcgRandom& random) const {
-        const Mesh& mesh = scene_.mesh(drawn);
-        const Triangle& t = mesh.triangles[triangle];
-        const double a = random.uniform();
-        const glm::dvec2 at = measure::uniform_in_triangle(a, random.uniform());
-        return drawn_[drawn].world((1 - at.x - at.y) * glm::dvec3(mesh.positions[t.x]) +
-                                   at.x * glm::dvec3(mesh.positions[t.y]) +
-                                   at.y * glm::dvec3(mesh.positions[t.z]));
-    }
-    static uint32_t one_of(std::span<const uint32_t> triangles, PcgRandom& random) {
-        const double at = random.uniform() * static_cast<double>(triangles.size());
-        return triangles[std::min(static_cast<size_t>(at), triangles.size() - 1)];
-    }
-
     /// The rays for each of the parts that need a look, `wanted` of them or fewer.
     template <typename NeedsLook>
     int aims_of(int wanted, const NeedsLook& needs_look) {
@@ -346,6 +325,7 @@ private:
             job_.check();
             const ray::FlushDenormals fast;
             PcgRandom random(4, i);
+            RandomPlace place(scene_.mesh(drawn), drawn_[i].world, random);
             LightPicker picker(lights_);
             visit_parts(
                 drawn, [&](const Bound& bound) { return seen_width(bound); },
@@ -354,8 +334,17 @@ private:
                     if (!needs_look(drawn, triangles, bound))
                         return;
                     const int tries = aims_at(drawn, triangles, bound, aims);
-                    for (int k = 0; k < tries; ++k) {
-                        if (sees(drawn, one_of(triangles, random), picker, random)) {
+                    const glm::dvec3 back = view_.camera.orthographic
+                                                ? -view_.camera.direction
+                                                : view_.camera.position - bound.center;
+                    // Places out of the picture cost no ray.
+                    for (int k = 0, rays = 0; rays < tries && k < kMostTries * tries; ++k) {
+                        const uint32_t triangle = place.one_of(triangles, back);
+                        const auto walk = walk_to(place.point_on(triangle));
+                        if (!walk)
+                            continue;
+                        ++rays;
+                        if (sees(drawn, triangle, *walk, picker, random)) {
                             note_all(drawn, triangles, kSeen);
                             return;
                         }
@@ -364,14 +353,12 @@ private:
         });
     }
 
-    /// Whether the eye sees a random place of a triangle, whose shadows are noted then.
-    bool sees(uint32_t drawn, uint32_t triangle, LightPicker& picker, PcgRandom& random) {
-        std::optional<SightWalk> walk = walk_to(point_on(drawn, triangle, random));
-        if (!walk)
-            return false;
-        walk->far += scene_.aside(walk->far);
+    /// Whether the eye sees a triangle where a walk ends on it; its shadows are noted then.
+    bool sees(uint32_t drawn, uint32_t triangle, SightWalk walk, LightPicker& picker,
+              PcgRandom& random) {
+        walk.far += scene_.aside(walk.far);
         std::vector<SightCrossing> crossings;
-        scene_.cross(*walk, crossings);
+        scene_.cross(walk, crossings);
         const auto place = std::find_if(
             crossings.begin(), crossings.end(),
             [&](const SightCrossing& at) { return at.drawn == drawn && at.triangle == triangle; });
@@ -379,8 +366,7 @@ private:
             return false;
         if (place->bends)
             bends_ = true;
-        const SightNormals normals = sight_normals(scene_.mesh(drawn), drawn_[drawn].world,
-                                                   triangle, place->u, place->v, walk->direction);
+        const SightNormals normals = normals_at(*place, walk);
         if (normals.any)
             shade(*place, normals, picker, random);
         return true;
@@ -399,6 +385,7 @@ private:
             job_.check();
             const ray::FlushDenormals fast;
             PcgRandom random(5, i);
+            RandomPlace place(scene_.mesh(drawn), drawn_[i].world, random);
             LightPicker picker(lights_);
             visit_parts(
                 drawn, [&](const Bound& bound) { return seen_width(bound); },
@@ -415,9 +402,10 @@ private:
                         const ShadowLight& light = lights_[number];
                         if (!reaches_->seen(number, bound))
                             continue;
+                        const glm::dvec3 on = -way_to(light, bound.center, random).direction;
                         for (int aim = 0; aim < tries; ++aim) {
-                            const uint32_t triangle = one_of(triangles, random);
-                            if (shows_shadow(point_on(drawn, triangle, random), light, random)) {
+                            const uint32_t triangle = place.one_of(triangles, on);
+                            if (shows_shadow(place.point_on(triangle), light, random)) {
                                 note_all(drawn, triangles, kShades);
                                 return;
                             }

@@ -273,7 +273,7 @@ TEST_F(SeenPartsTest, TheShadowOfASlatBelowManyLampsIsFound) {
 }
 
 TEST_F(SeenPartsTest, OfTooManyLightsEverythingThrowsShadows) {
-    model_.lights.assign(60'000, sun({0, 0, -1}));
+    model_.lights.assign(120'000, sun({0, 0, -1}));
     add({10, 0, 0}, {1, 1, 1});
     const size_t behind_the_eye = add({-10, 0, 0}, {1, 1, 1});
     EXPECT_EQ(needs(behind_the_eye), kShades);
