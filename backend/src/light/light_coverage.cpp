@@ -17,7 +17,7 @@ namespace {
 constexpr double kMostLooks = 524288;
 // The looks along a pixel of small pictures.
 // Taste: more find thinner edges, more slowly.
-constexpr double kFiner = 2;
+constexpr double kFiner = 1;
 // The looks that are added beside one that is alone.
 // Fitted: by tests/bench/speed/bench_lights.py, pixels that are off in the corridor.
 constexpr int kCloser = 4;
