@@ -68,7 +68,7 @@ protected:
             GTEST_SKIP() << reason;
         std::filesystem::remove_all(own_scratch());
         options.folder = own_scratch() / "scene";
-        options.shading.sky_rays = 64;
+        options.shading.sky_rays = 128;
     }
 
     /// A wall on the ground, with the sky as its only light.

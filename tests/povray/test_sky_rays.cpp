@@ -27,6 +27,6 @@ TEST_F(SkyRays, ALargerPictureHasMoreAndASmallerOneKeepsThem) {
         hashes.insert(light->hash);
         return light->shares->rays;
     };
-    EXPECT_EQ(std::vector({rays(100), rays(1e6), rays(100)}), (std::vector{16u, 128u, 128u}));
+    EXPECT_EQ(std::vector({rays(100), rays(1e6), rays(100)}), (std::vector{16u, 64u, 64u}));
     EXPECT_EQ(hashes.size(), 2u);  // each has a file of its own
 }
