@@ -48,6 +48,57 @@ bool contains(const Ring& ring, const glm::dvec2& at) {
     return inside;
 }
 
+/// The corners of a list by where they lie, so that those within a box are found without the others.
+class CornerGrid {
+public:
+    /// `places[i]`: where `corners[i]` lies.
+    CornerGrid(const std::vector<Corner>& corners, const Ring& places) {
+        const RingBox box = box_of(places);
+        low_ = box.low;
+        // About as many cells as corners.
+        side_ = static_cast<size_t>(std::sqrt(static_cast<double>(corners.size()))) + 1;
+        const glm::dvec2 size = box.high - box.low;
+        for (int axis = 0; axis < 2; ++axis)
+            cells_of_unit_[axis] = size[axis] > 0 ? static_cast<double>(side_) / size[axis] : 0;
+        first_.resize(side_ * side_ + 1, 0);
+        for (const glm::dvec2& place : places)
+            ++first_[cell(place) + 1];
+        for (size_t i = 1; i < first_.size(); ++i)
+            first_[i] += first_[i - 1];
+        corners_.resize(corners.size());
+        std::vector<uint32_t> next(first_.begin(), first_.end() - 1);
+        for (size_t i = 0; i < corners.size(); ++i)
+            corners_[next[cell(places[i])]++] = corners[i];
+    }
+
+    /// Whether a test of the corners in cells that meet a box holds for any.
+    template <typename Test>
+    bool any(const RingBox& box, const Test& test) const {
+        const size_t left = along(box.low, 0);
+        const size_t right = along(box.high, 0);
+        for (size_t row = along(box.low, 1); row <= along(box.high, 1); ++row) {
+            for (size_t i = first_[row * side_ + left]; i < first_[row * side_ + right + 1]; ++i) {
+                if (test(corners_[i]))
+                    return true;
+            }
+        }
+        return false;
+    }
+
+private:
+    size_t along(const glm::dvec2& at, int axis) const {
+        const double cell = (at[axis] - low_[axis]) * cells_of_unit_[axis];
+        return static_cast<size_t>(limited(cell, 0, static_cast<double>(side_ - 1)));
+    }
+    size_t cell(const glm::dvec2& at) const { return along(at, 1) * side_ + along(at, 0); }
+
+    glm::dvec2 low_{0.0};
+    glm::dvec2 cells_of_unit_{0.0};
+    size_t side_ = 1;
+    std::vector<uint32_t> first_;  // of corners_, by cell; one more at the end
+    std::vector<Corner> corners_;
+};
+
 /// Cuts the ears of one island.
 class EarCutter {
 public:
@@ -98,6 +149,7 @@ public:
         enum class EarRound : uint8_t { Usual, Again, Forced };
         EarRound round = EarRound::Usual;
         std::vector<uint8_t> no_ear(list_.size(), 0);
+        const CornerGrid grid = grid_around(start);
         Corner ear = start;
         Corner stop = start;
         size_t steps = 0;
@@ -110,12 +162,13 @@ public:
             const bool flat = area == 0;
             const bool forced = round == EarRound::Forced;
             if (area > 0 && !forced && no_ear[ear] == 0)
-                no_ear[ear] = is_ear(before, ear, after) ? 0 : 1;
+                no_ear[ear] = is_ear(grid, before, ear, after) ? 0 : 1;
             if (flat || (area > 0 && (forced || no_ear[ear] == 0))) {
                 if (!flat)
                     out_.emplace_back(list_[before].point, list_[ear].point, list_[after].point);
                 list_[before].next = after;
                 list_[after].previous = before;
+                list_[ear].next = list_[ear].previous = ear;  // it is cut
                 no_ear[before] = no_ear[after] = 0;
                 stop = after;
                 round = EarRound::Usual;
@@ -141,25 +194,33 @@ private:
 
     const glm::dvec2& point(Corner corner) const { return points_[list_[corner].point]; }
 
-    bool is_ear(Corner before, Corner ear, Corner after) const {
+    CornerGrid grid_around(Corner start) const {
+        std::vector<Corner> corners;
+        Ring places;
+        Corner i = start;
+        do {
+            corners.push_back(i);
+            places.push_back(point(i));
+            i = list_[i].next;
+        } while (i != start);
+        return {corners, places};
+    }
+
+    bool is_ear(const CornerGrid& grid, Corner before, Corner ear, Corner after) const {
         const glm::dvec2& a = point(before);
         const glm::dvec2& b = point(ear);
         const glm::dvec2& c = point(after);
-        const double left = std::min({a.x, b.x, c.x});
-        const double right = std::max({a.x, b.x, c.x});
-        const double low = std::min({a.y, b.y, c.y});
-        const double high = std::max({a.y, b.y, c.y});
-        for (Corner i = list_[after].next; i != before; i = list_[i].next) {
+        const RingBox box{{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
+                          {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})}};
+        return !grid.any(box, [&](Corner i) {
             const glm::dvec2& p = point(i);
-            if (p.x < left || p.x > right || p.y < low || p.y > high)
-                continue;
-            if (p == a || p == b || p == c)
-                continue;
-            if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0 &&
-                turn(point(list_[i].previous), p, point(list_[i].next)) <= 0)
+            if (p.x < box.low.x || p.x > box.high.x || p.y < box.low.y || p.y > box.high.y)
                 return false;
-        }
-        return true;
+            if (list_[i].next == i || p == a || p == b || p == c)
+                return false;
+            return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0 &&
+                   turn(point(list_[i].previous), p, point(list_[i].next)) <= 0;
+        });
     }
 
     /// Whether the direction to `to` lies within the corner.
