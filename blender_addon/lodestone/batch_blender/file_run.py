@@ -296,6 +296,7 @@ def main() -> None:
     run = FileRun(job)
     signal.signal(signal.SIGTERM, lambda number, frame: run.work.stop())
     run.run()
+    process_session.end_at_once()
 
 
 if __name__ == "__main__":
