@@ -186,7 +186,7 @@ class Files(unittest.TestCase):
         self.assertIn("max_trace_level 5 ", scene)
         self.assertIn(",9,9 adaptive", scene)
         self.assertNotIn("adc_bailout", scene)
-        self.assertIn("Antialias_Threshold=0.2\nAntialias_Depth=2", ini)
+        self.assertIn("Antialias_Threshold=0.3\nAntialias_Depth=2", ini)
         self.settings.trace_depth = 7
         self.settings.area_samples = 9
         self.settings.reflections = 51.0

@@ -23,7 +23,7 @@ class Inherited(unittest.TestCase):
         found = [quality(error).antialias_depth for error in (0.0, 0.5, 0.99, 1.0, 2.0)]
         self.assertEqual(found, [3, 3, 3, 2, 2])
         found = [quality(error).antialias_threshold for error in (0.0, 0.99, 1.0, 4.0)]
-        self.assertEqual(found, [0.1, 0.1, 0.2, 0.4])
+        self.assertEqual(found, [0.1, 0.1, 0.3, 0.6])
 
     def test_errors_are_the_one_number(self):
         for error in PRESETS:
@@ -47,7 +47,7 @@ class Inherited(unittest.TestCase):
 
     def test_preview_and_draft(self):
         preview, draft = quality(2.0), quality(8.0)
-        self.assertEqual((preview.antialias, preview.antialias_threshold), ("FINAL", 0.282843))
+        self.assertEqual((preview.antialias, preview.antialias_threshold), ("FINAL", 0.424264))
         self.assertEqual((preview.area_samples, preview.trace_depth, preview.indirect), (9, 4, 20))
         self.assertEqual((draft.antialias, draft.area_samples), ("OFF", 1))
         self.assertEqual((draft.trace_depth, draft.indirect), (2, 12))
