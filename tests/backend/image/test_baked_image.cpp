@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards baked pictures: every operation's known answer, where texels come from, hostile steps.
+#include "base/color.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/random.h"
 #include "image/bake/baked_image.h"
 #include "image/texture_sampler.h"
 
@@ -69,6 +71,19 @@ TEST(Bake, OperationsHaveTheirKnownAnswers) {
     expect_near(of(BakeOp::FromHsv, {1.0 / 3, 1, 0.5}), {0, 0.5, 0});
     expect_near(of(BakeOp::ToSrgb, {0.5, 1, 0}), {0.7353570, 1, 0});
     expect_near(of(BakeOp::FromSrgb, {0.7353570, 1, 0}), {0.5, 1, 0});
+}
+
+TEST(Bake, ValuesThatAreKeptAreThoseOfTheirNumbers) {
+    PcgRandom random(1, 1);
+    for (int i = 0; i < 3000; ++i) {  // more numbers than are kept
+        const glm::dvec3 x(random.uniform(), 4 * random.uniform(), 1e-3 * random.uniform());
+        const glm::dvec3 encoded = of(BakeOp::ToSrgb, x);
+        const glm::dvec3 decoded = of(BakeOp::FromSrgb, -x);
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_EQ(encoded[c], double{encode_srgb(static_cast<float>(x[c]))});
+            ASSERT_EQ(decoded[c], double{decode_srgb(static_cast<float>(-x[c]))});
+        }
+    }
 }
 
 TEST(Bake, TexelsOfTheSameSizeAreCopied) {

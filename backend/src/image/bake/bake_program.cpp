@@ -7,7 +7,10 @@
 #include <glm/common.hpp>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace lodestone::image {
 namespace {
@@ -45,6 +48,26 @@ Color each(const Color& a, const Function& function) {
 template <typename Function>
 Color each(const Color& a, const Color& b, const Function& function) {
     return {function(a.x, b.x), function(a.y, b.y), function(a.z, b.z), function(a.w, b.w)};
+}
+
+/// The value of a function that is 0 at 0, which is kept: the numbers of a picture are few, and come
+/// again and again.
+template <float (*kFunction)(float)>
+double kept(double x) {
+    struct KeptValue {
+        float from = 0;
+        float to = 0;
+    };
+    // Taste: more numbers push each other out less often, until they no longer fit a core's cache.
+    constexpr unsigned kBits = 10;
+    thread_local std::array<KeptValue, size_t{1} << kBits> values{};
+    const auto from = static_cast<float>(x);
+    const auto bits = std::bit_cast<uint32_t>(from);
+    // Law: multiplied by the golden ratio, neighbors lie far apart (Knuth, volume 3, 6.4).
+    KeptValue& value = values[(bits * 0x9e3779b9u) >> (32u - kBits)];
+    if (std::bit_cast<uint32_t>(value.from) != bits)
+        value = {from, kFunction(from)};
+    return static_cast<double>(value.to);
 }
 
 Color looked_up(const std::vector<glm::vec4>& table, double at) {
@@ -163,13 +186,9 @@ Color result_of(const BakeStep& step, const std::vector<Color>& done) {
         case BakeOp::FromHsv:
             return from_hsv(a);
         case BakeOp::ToSrgb:
-            return each(a, [](double x) {
-                return static_cast<double>(encode_srgb(static_cast<float>(std::max(x, 0.0))));
-            });
+            return each(a, [](double x) { return kept<encode_srgb<float>>(std::max(x, 0.0)); });
         case BakeOp::FromSrgb:
-            return each(a, [](double x) {
-                return static_cast<double>(decode_srgb(static_cast<float>(x)));
-            });
+            return each(a, kept<decode_srgb<float>>);
     }
     return Color(0.0);
 }
