@@ -117,6 +117,11 @@ size_t MeshTextures::of(size_t triangle, int corner) const {
                              : slots_[slot_at_[shown_.slot(triangle)]].text;
 }
 
+bool MeshTextures::bumped() const {
+    return std::any_of(slots_.begin(), slots_.end(),
+                       [](const TexturedSlot& slot) { return slot.bumped; });
+}
+
 bool MeshTextures::is_glass(size_t triangle) const {
     return refraction_of(slots_[slot_at_[shown_.slot(triangle)]].material) > 0;
 }
@@ -232,8 +237,7 @@ size_t MeshTextures::add(const TexturedSlot& slot, PictureWriter& pictures) {
 }
 
 void MeshTextures::find_planes() {
-    if (std::none_of(slots_.begin(), slots_.end(),
-                     [](const TexturedSlot& slot) { return slot.bumped; }))
+    if (!bumped())
         return;
     plane_of_.assign(mesh_.triangles.size(), uint8_t{kMostPlanes});
     for (size_t i = 0; i < mesh_.triangles.size(); ++i) {

@@ -53,6 +53,8 @@ public:
     size_t of(size_t triangle, int corner) const;
     /// Whether corners of one triangle may differ; false: all corners of a triangle show the same.
     bool differ_in_triangles() const { return !corners_.empty(); }
+    /// Whether any triangle shows bumps.
+    bool bumped() const;
 
 private:
     struct TexturedSlot {

@@ -161,7 +161,8 @@ public:
 private:
     /// Chooses the units that the mesh is written in; see kWeighedSize.
     void choose_units(const Box3& box) {
-        if (textures_ == nullptr || !textures_->differ_in_triangles())
+        // Bumps are as steep as they are written: a scale would flatten them.
+        if (textures_ == nullptr || !textures_->differ_in_triangles() || textures_->bumped())
             return;
         const glm::dvec3 size = box.size();
         const double largest = std::max({size.x, size.y, size.z});
