@@ -14,7 +14,7 @@
 
 namespace lodestone::light {
 
-/// Takes its chances from a generator, which it shares. For one thread; all arguments outlive it.
+/// Takes its chances from a generator, which it shares. For one thread; mesh and generator outlive it.
 class RandomPlace {
 public:
     RandomPlace(const Mesh& mesh, const Affine& world, PcgRandom& random)
@@ -53,7 +53,7 @@ private:
     }
 
     const Mesh& mesh_;
-    const Affine& world_;
+    const Affine world_;
     PcgRandom& random_;
 };
 
