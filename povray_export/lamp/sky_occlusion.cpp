@@ -24,8 +24,8 @@ constexpr uint32_t kBakeVersion = 17;
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
 // The rays of a corner where triangles are large, over those where they are as large as most.
-// Taste: a larger value has more noise on leaves and small things, where it is least seen: with 2 pictures
-// of scenes are by a hundredth of it farther from converged Cycles, and a tenth of the rays is spared.
+// Taste: a larger value has more noise on leaves and small things, where it is seen least, for fewer
+// rays.
 constexpr int kOfLargest = 2;
 
 class SkyPlanner {

@@ -14,7 +14,8 @@ namespace lodestone::povray {
 /// a texture uses them. Coordinates are rounded by less than a millionth of the mesh's size,
 /// normals by 0.00005. Triangles without area after rounding are left out; few triangles, and such
 /// with large boxes, have no tree over them. Normals, uvs and positions are shared in whichever way
-/// needs the fewest numbers.
+/// needs the fewest numbers. A mesh whose corners have textures of their own, without bumps, is written
+/// in units of its own around its middle, and scaled and moved back.
 /// Throws Error(Internal) for a non-finite coordinate.
 std::string mesh_text(const Mesh& mesh, const MeshTextures* textures, const std::string& identifier,
                       const Job& job, std::string_view before = {});

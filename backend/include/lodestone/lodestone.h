@@ -1146,8 +1146,9 @@ typedef struct lds_povray_options {
     double bounce_error;     /* 0...1: how far gathered light is interpolated; usual 0.6, with OFF
                                 1, with REFERENCE 0.4 */
     int32_t sky_rays;   /* rays by which each corner of a mesh finds how much of the sky's uniform
-                           light reaches it, up to 1024; below 0: all of it reaches everything;
-                           usual 128, with OFF none. Nothing with bounces, which do it */
+                           light reaches it, half as many where triangles are small, up to
+                           1024; below 0: all of it reaches everything; usual 128, with OFF none.
+                           Nothing with bounces, which do it */
     double filter_size; /* pixels: of the Blackman-Harris filter that blurs the picture, as Cycles'
                            and Eevee's do (usually 1.5 there); usual 0: each pixel is what its
                            square shows. Never where false_color or covered_only is set, nor in

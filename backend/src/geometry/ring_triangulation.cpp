@@ -48,7 +48,7 @@ bool contains(const Ring& ring, const glm::dvec2& at) {
     return inside;
 }
 
-/// The corners of a list by where they lie, so that those within a box are found without the others.
+/// The corners of a list by where they lie: those within a box are found without the others.
 class CornerGrid {
 public:
     /// `places[i]`: where `corners[i]` lies.

@@ -14,7 +14,8 @@
 
 namespace lodestone::light {
 
-/// Takes its chances from a generator, which it shares. For one thread; mesh and generator outlive it.
+/// Takes its chances from a generator, which it shares. For one thread; the mesh and the generator
+/// outlive it.
 class RandomPlace {
 public:
     RandomPlace(const Mesh& mesh, const Affine& world, PcgRandom& random)

@@ -28,18 +28,19 @@ namespace {
 // many the sky shows between trees where more trees are.
 constexpr double kRaysOfPixel = 0.5;
 constexpr double kMostRays = 1 << 20;  // Taste: as kRaysOfPixel
-constexpr size_t kShadedRays = 2;  // Taste: as kRaysOfPixel; shadows are looked for of each second
+constexpr size_t kShadedRays = 2;      // Taste: as kRaysOfPixel; every other one looks for shadows
 // The width of a part, in distances between rays: a part of which a quarter is seen is met.
 // Taste: a larger value leaves out less, a smaller one misses more.
 constexpr double kPartWidth = 6;
-// The rays toward a part that no ray through the picture met, and from it along lights; fewer, but one,
-// where all parts together would have more than the most.
+// The rays toward a part that no ray through the picture met, and from it along lights; fewer, but
+// one, where all parts together would have more than the most.
 // Taste: more find parts of which less is seen.
 constexpr int kAims = 4;
 constexpr int kShadowAims = 2;         // Taste: as kAims
 constexpr size_t kMostAims = 1 << 21;  // Taste: some seconds
 constexpr int kMostTries = 4;          // Taste: places of a part for each ray toward it
-// The pixels of a part, an eighth of which is seen, that rays through each miss in one of e cases.
+// The rays' distances squared that cover a part of which an eighth is seen, and which is missed in
+// one of e cases.
 // Law: one ray is expected to meet it.
 constexpr double kOftenMissed = 8;
 constexpr int kMostMirrors = 4;  // Taste: more in a row find things deeper in mirrors

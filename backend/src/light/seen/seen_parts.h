@@ -24,8 +24,8 @@ public:
     /// Model, drawn things and view as for plan_lights(); `lights`: all that may throw shadows.
     /// Of very many, everything throws some. Throws Error(RaysUnavailable),
     /// Error(BadFile), Error(Cancelled). The result does not depend on the number of threads.
-    /// cost: rays(view) rays through the picture, to one or two lights from each; a tree of boxes
-    /// for each mesh.
+    /// cost: rays(view) rays through the picture, to one or two lights from every other one; a tree
+    /// of boxes for each mesh.
     SeenParts(const Model& model, const RendererSurfaces& renderer,
               std::span<const DrawnThing> drawn, const View& view, std::span<const Light> lights,
               const Job& job);

@@ -129,10 +129,10 @@ CONTROLS = (
     ),
     Control(
         "sky_occlusion", "Sky Occlusion", "shadows", _sky_occlusion, "", 0, 1024,
-        "Rays by which each corner of a mesh finds how much of the sky's even light reaches it: "
-        "under trees and roofs it is darker. What they find is kept for the next picture, which "
-        "they make take a little longer. 0: the sky shines through everything. Bounces do without "
-        "it",
+        "Rays by which each corner of a large triangle (half as many: of a small one) finds how "
+        "much of the sky's even light reaches it: under trees and roofs it is darker. What they "
+        "find is kept for the next picture, which they make take a little longer. 0: the sky "
+        "shines through everything. Bounces do without it",
     ),
     Control(
         "reflections", "Reflections", ROOT, _same, "px", 0.0, MOST_PIXELS,
