@@ -2,7 +2,7 @@
 // Guards meshes whose corners have textures of their own: POV-Ray weighs them right wherever a
 // mesh stands and however large it is.
 #include "povray/povray_scenes.h"
-#include "ray/mesh_scene.h"
+#include "scenes/with_rays.h"
 
 #include <glm/geometric.hpp>
 
@@ -60,22 +60,25 @@ struct AslantWall {
     }
 };
 
-class CornerTextures : public testing::Test {
+class CornerTextures : public WithRays {
 protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
+    CornerTextures() {
         std::filesystem::remove_all(own_scratch());
         options.folder = own_scratch() / "scene";
         options.shading.sky_rays = 128;
     }
 
     /// A wall on the ground, with the sky as its only light.
-    const Model& model_of(const AslantWall& wall) {
+    const Model& model_of(const AslantWall& wall, const Texture& bumps = {}) {
         builder.model.world.color = glm::dvec3(0.5);
         const uint32_t gray = builder.matte({.8, .8, .8});
-        builder.place(builder.mesh(wall.mesh(), {gray}));
+        Material material = builder.model.materials[gray];
+        material.bump_texture = bumps;
+        material.bump_distance = 0.1;
+        Mesh mesh = wall.mesh();
+        for (const glm::vec3& at : mesh.positions)
+            mesh.uvs.emplace_back(at.x, at.z);
+        builder.place(builder.mesh(mesh, {builder.material(material)}));
         const double reach = wall.cell * 90;
         const ObjectIndex ground =
             builder.mesh(shapes::box({-reach, -reach, -wall.cell}, {reach, reach, 0}), {gray});
@@ -152,6 +155,24 @@ TEST_F(CornerTextures, PositionsAreAFewUnitsFromTheMiddleOfTheMesh) {
             EXPECT_GE(largest, 0.999) << size;
         }
         EXPECT_GE(meshes, 1u) << size;
+        std::filesystem::remove_all(options.folder);
+    }
+}
+
+// Patches of bumps were 26 steps of 255 off: a mesh that is scaled has flatter bumps.
+TEST_F(CornerTextures, MeshesWithBumpsKeepTheirUnits) {
+    for (const bool bumped : {false, true}) {
+        builder = {};
+        Problems problems;
+        const Model& model = model_of({}, bumped ? scenes::checker() : Texture{});
+        scenes::write(model, AslantWall{}.view(), options, problems);
+        size_t scaled = 0;
+        for (const auto& file : std::filesystem::directory_iterator(options.folder / "r")) {
+            const std::string text = read_file(file.path());
+            const bool list = text.find("texture_list") != std::string::npos;
+            scaled += list && text.find("scale ") != std::string::npos ? 1 : 0;
+        }
+        EXPECT_EQ(scaled, bumped ? 1u : 2u);  // the ground has none
         std::filesystem::remove_all(options.folder);
     }
 }

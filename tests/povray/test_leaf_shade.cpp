@@ -2,6 +2,7 @@
 // Guards the sky's light on what is cut out of leaves.
 #include "povray/mask_cards.h"
 #include "povray/povray_scenes.h"
+#include "scenes/with_rays.h"
 
 #include <regex>
 #include <set>
@@ -9,11 +10,10 @@
 using namespace lodestone;
 using namespace lodestone::povray;
 
+class LeafShade : public WithRays {};
+
 // Leaves had one shade each, of a large card too.
-TEST(LeafShade, PartsOfACutLeafHaveTheShadeOfTheirPlaces) {
-    std::string reason;
-    if (!ray::available(&reason))
-        GTEST_SKIP() << reason;
+TEST_F(LeafShade, PartsOfACutLeafHaveTheShadeOfTheirPlaces) {
     scenes::Builder builder;
     builder.model.world.color = glm::dvec3(0.5);
     builder.place(builder.mesh(card(), {builder.material(leaf(disk()))}));
