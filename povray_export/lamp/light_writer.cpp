@@ -39,6 +39,7 @@ public:
         soft_ = sampling.rays > 1 && light.shadow && (!grid_ || grid_->rays > 1);
         parts_ = !grid_ || grid_->parts;
         start_ = sampling.thorough ? 1 : 0;
+        parts_start_ = start_ + (!grid_ || grid_->soft ? 1 : 0);
         while (most_ < kMostRays && most_ < sampling.steps)
             most_ = 2 * most_ - 1;
     }
@@ -86,7 +87,7 @@ public:
                                                           std::clamp(light_.spot_blend, 0.0, 1.0)));
         append_cone(inner, outer, 1);
         if (soft) {  // each part has its own cone, as in Cycles
-            append_ball({9, 9, start_ + 1});
+            append_ball({9, 9, parts_start_});
             if (parts_)
                 out_ += " area_illumination on";
         }
@@ -105,7 +106,7 @@ public:
         fading(light_.position, color * (cone.strength / (4 * kPi)), fade);
         append_cone(cone.inner, cone.outer, cone.tightness);
         if (soft) {
-            RayGrid grid{9, 9, start_ + 1};
+            RayGrid grid{9, 9, parts_start_};
             const double ratio = std::max(width, height) / std::min(width, height);
             int& longer = width > height ? grid.u : grid.v;
             int& shorter = width > height ? grid.v : grid.u;
@@ -241,8 +242,9 @@ private:
     bool soft_ = true;
     bool parts_ = true;  // each part of a lamp lights by itself
     int rays_ = 17;
-    int most_ = 3;  // rays along an edge
-    int start_ = 0;
+    int most_ = 3;         // rays along an edge
+    int start_ = 0;        // as RayGrid::start
+    int parts_start_ = 1;  // the same of lamps that are drawn in parts
 };
 
 bool placed(const Light& light) {

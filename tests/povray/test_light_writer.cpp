@@ -65,6 +65,19 @@ TEST(PovrayLight, HoweverWideASunPointsAreShadedOnceForAllOfIt) {
     }
 }
 
+// A third of the rays of a front of windows went to places between others that lit the same.
+TEST(PovrayLight, AreasWithoutSoftShadowsBeginWithTheirCorners) {
+    Light area = light_of(LightKind::Area);
+    area.direction = {0, 0, -1};
+    area.edge_u = {1, 0, 0};
+    area.edge_v = {0, 1, 0};
+    LightSampling sampling;
+    sampling.grid = light::LampGrid{9, true, true};
+    EXPECT_TRUE(written(area, sampling).has(",9,9 adaptive 1 area_illumination on"));
+    sampling.grid->soft = false;
+    EXPECT_TRUE(written(area, sampling).has(",9,9 adaptive 0 area_illumination on"));
+}
+
 TEST(PovrayLight, OnlySoftLightsCastManyRaysAndDraftsNone) {
     for (const LightKind kind : kKinds) {
         const Light light = light_of(kind);

@@ -26,9 +26,9 @@ constexpr double kVeryLong = 12;
 // The rays of a finer grid of a cone or an area that POV-Ray always casts.
 // Law: 3 x 3, as such grids are written (adaptive 1).
 constexpr double kAlways = 9;
-// The same of a point's grid.
+// The same of a point's grid, and where no soft shadow shows.
 // Law: its corners, as such grids are written (adaptive 0).
-constexpr double kAlwaysOfPoint = 4;
+constexpr double kAlwaysCorners = 4;
 // The share of the others that it casts.
 // Taste: most points see all of a lamp or nothing of it.
 constexpr double kRefined = 0.25;
@@ -95,8 +95,10 @@ public:
     LampGrid grid(int most) const {
         LampGrid out;
         const bool parts = light_.kind != LightKind::Point;
-        out.rays = grid_rays(
-            std::max(static_cast<double>(rays_of_penumbrae()), parts ? spread_ : 0.0), most);
+        const int of_penumbrae = rays_of_penumbrae();
+        out.rays =
+            grid_rays(std::max(static_cast<double>(of_penumbrae), parts ? spread_ : 0.0), most);
+        out.soft = of_penumbrae > 1;
         // The edge of a cone is as soft as a shadow's.
         const bool cone = light_.kind == LightKind::Spot || light_.spread > 0;
         out.parts = parts && out.rays > 1 && (cone || spread_ > 1);
@@ -140,11 +142,11 @@ LampGrid finest_grid(const Light& light, int rays) {
     if (!(extent_of(light) > 0) || rays <= 1 || !light.shadow)
         return {};
     if (light.kind == LightKind::Point)
-        return {rays, false};
+        return {rays, false, true};
     const double ratio = edge_ratio(light);
     if (ratio > kLong)
-        return {ratio > kVeryLong ? 2 * rays - 1 : rays, true};
-    return {std::max(3, (rays - 1) / 2 + 1), true};
+        return {ratio > kVeryLong ? 2 * rays - 1 : rays, true, true};
+    return {std::max(3, (rays - 1) / 2 + 1), true, true};
 }
 
 int shorter_edge(const Light& light, int rays) {
@@ -155,7 +157,7 @@ int shorter_edge(const Light& light, int rays) {
 
 double shadow_rays(const Light& light, const LampGrid& grid) {
     const double all = static_cast<double>(grid.rays) * shorter_edge(light, grid.rays);
-    const double always = light.kind == LightKind::Point ? kAlwaysOfPoint : kAlways;
+    const double always = light.kind == LightKind::Point || !grid.soft ? kAlwaysCorners : kAlways;
     return all <= always ? all : always + kRefined * (all - always);
 }
 

@@ -13,6 +13,7 @@ namespace lodestone::light {
 struct LampGrid {
     int rays = 1;        // along its longer edge; 1: one shadow ray, to its middle
     bool parts = false;  // each part of it lights by its own distance and angle
+    bool soft = false;   // its soft shadows show: its corners alone would miss thin things
 
     // NOLINTNEXTLINE(modernize-use-nullptr)
     auto operator<=>(const LampGrid&) const = default;
@@ -40,8 +41,8 @@ LampGrid finest_grid(const Light& light, int rays);
 /// The rays along the shorter edge for this number along the longer one.
 int shorter_edge(const Light& light, int rays);
 
-/// The shadow rays that a light costs at a point in the mean. POV-Ray begins with 3 x 3, of
-/// points with 2 x 2, and casts more where these disagree.
+/// The shadow rays that a light costs at a point in the mean. POV-Ray begins with 3 x 3, of points
+/// and where no soft shadow shows with 2 x 2, and casts more where these disagree.
 double shadow_rays(const Light& light, const LampGrid& grid);
 
 /// Whether a part of a light, and not all of it, reaches a point.

@@ -52,13 +52,14 @@ ArrivingShares from_area(const Light& area, const glm::dvec3& point, const glm::
     // Taste: these tell whether a lamp matters, and need not be exact.
     constexpr double kMostParts = 8;
     const glm::dvec3 middle = area.position - point;
-    const glm::dvec3 out = glm::normalize(area.direction);
     // Most lamps of a front of windows are behind a point, or it faces away from all of them.
     const auto reach = [&area](const glm::dvec3& way) {
         return 0.5 * (std::abs(glm::dot(area.edge_u, way)) + std::abs(glm::dot(area.edge_v, way)));
     };
-    if (reach(out) - glm::dot(middle, out) <= 0 || glm::dot(middle, normal) + reach(normal) <= 0)
+    if (reach(area.direction) <= glm::dot(middle, area.direction) ||
+        glm::dot(middle, normal) + reach(normal) <= 0)
         return {};
+    const glm::dvec3 out = glm::normalize(area.direction);
     const double away = glm::length(middle);
     const glm::dvec3 to_middle = middle / std::max(away, 1e-300);
     const auto parts = static_cast<int>(std::clamp(

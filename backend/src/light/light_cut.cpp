@@ -109,10 +109,8 @@ private:
         const size_t lamps = shares_.empty() ? 0 : shares_[0].size();
         reaching_.assign(tree_.nodes.size(), 0);
         for (const uint32_t point : seen) {
-            for (size_t i = 0; i < lamps; ++i) {
-                if (shares_[point][i] > 0)
-                    reaching_[i] = 1;
-            }
+            for (size_t i = 0; i < lamps; ++i)
+                reaching_[i] = shares_[point][i] > 0 ? uint8_t{1} : reaching_[i];
         }
         // Lamps that see each other light nearly the same points: where one of them is found, the
         // few points may just have missed the others.

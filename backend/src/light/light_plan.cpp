@@ -21,7 +21,7 @@ namespace {
 constexpr double kShare = 0.05;
 // The most points for each pixel, in pictures that have more than the fewest points of rooms.
 // Taste: the looks at small pictures add points where these are too few.
-constexpr double kMostShare = 0.25;
+constexpr double kMostShare = 0.125;
 // The fewest points that still distinguish a dozen rooms.
 // Fitted: by a row of 12 rooms in 96 x 24 pixels (tests/povray/test_radiosity.cpp).
 constexpr double kFewRoomPoints = 3000;
@@ -91,6 +91,7 @@ std::vector<GroupLight> mattering_lamps(const RegionLights& regions, bool finest
                     continue;
                 grids[lamp]->rays = std::max(grids[lamp]->rays, wanted.rays);
                 grids[lamp]->parts = grids[lamp]->parts || wanted.parts;
+                grids[lamp]->soft = grids[lamp]->soft || wanted.soft;
             }
         }
     }

@@ -13,10 +13,10 @@ namespace {
 
 // The points that make a thing a region of its own.
 // Taste: fewer give more regions with shorter lists of lamps, and more light groups.
-constexpr size_t kOwn = 48;
+constexpr size_t kOwn = 24;
 // The fewest points of a box.
 // Taste: fewer cut finer, by points that hit a region by chance.
-constexpr size_t kCell = 16;
+constexpr size_t kCell = 8;
 // The most boxes of one thing.
 // Taste: more cut finer; each is another clipped copy in POV-Ray.
 constexpr size_t kPieces = 128;

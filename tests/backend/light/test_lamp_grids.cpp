@@ -67,12 +67,13 @@ TEST(LampGrids, APointOrALampWithoutShadowHasOneRay) {
     EXPECT_EQ(shadow_rays(light, {2, false}), 4);
     EXPECT_EQ(shadow_rays(light, {3, false}), 5.25);  // it begins at the corners
     light.kind = LightKind::Area;
-    EXPECT_EQ(shadow_rays(light, {3, false}), 9);
+    EXPECT_EQ(shadow_rays(light, {3, true, true}), 9);
+    EXPECT_EQ(shadow_rays(light, {3, true, false}), 5.25);  // no soft shadow shows
 }
 
 TEST(LampGrids, LongPanelsHaveLongGrids) {
     Light light = panel(1, 100);
-    EXPECT_EQ(finest_grid(light, 17), (LampGrid{9, true}));
+    EXPECT_EQ(finest_grid(light, 17), (LampGrid{9, true, true}));
     EXPECT_EQ(shorter_edge(light, 9), 9);
     light.edge_v *= 0.2;
     EXPECT_EQ(finest_grid(light, 17).rays, 17);
@@ -86,7 +87,7 @@ TEST(LampGrids, LongPanelsHaveLongGrids) {
 
 TEST(LampGrids, NearAndStrongIsFinestFarOrFaintIsOneRay) {
     const Light light = panel(1, 100);
-    EXPECT_EQ(grid_of(light, floor_at(0, 0)), (LampGrid{9, true}));
+    EXPECT_EQ(grid_of(light, floor_at(0, 0)), (LampGrid{9, true, true}));
     EXPECT_EQ(grid_of(light, floor_at(60, 1)), LampGrid{});
     EXPECT_EQ(grid_of(panel(1, 0.01), floor_at(0, 0.5)), LampGrid{});
     // In bright light fewer steps of its shadow can be told apart.
@@ -127,7 +128,20 @@ TEST(LampGrids, WhatLiesBetweenPointsAndALampIsNearIt) {
     EXPECT_LT(grid_of(light, points, demands).rays, 9);
     demands.apart = 640.0 * 0.3;                                   // 1.8 m at the floor
     EXPECT_LT(grid_of(panel(0.1, 0.3), points, demands).rays, 9);  // too small to be seen so near
-    EXPECT_EQ(grid_of(panel(3, 0.3), points, demands), (LampGrid{9, true}));
+    EXPECT_EQ(grid_of(panel(3, 0.3), points, demands), (LampGrid{9, true, false}));
+}
+
+// Windows close before a wall are sampled finely for the light beside them: where no shadow of them
+// shows, all parts that light alike need no more than corners.
+TEST(LampGrids, OnlySoftShadowsNeedMoreThanCornersWhereAllLightsAlike) {
+    const auto near_by = [&](bool soft) {
+        return grid_of(panel(1, 100), floor_at(0, 0), {},
+                       [soft](const Light&, const LitPoint&) { return soft; });
+    };
+    EXPECT_EQ(near_by(true), (LampGrid{9, true, true}));
+    EXPECT_EQ(near_by(false).parts, true);
+    EXPECT_GT(near_by(false).rays, 2);
+    EXPECT_FALSE(near_by(false).soft);
 }
 
 // Bulbs on a tree lit all of its cones through grids of rays, all of which ended at the same place.
