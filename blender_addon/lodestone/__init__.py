@@ -18,10 +18,9 @@ bl_info = {
     "support": "COMMUNITY",
 }
 
+_DATA_MODULES = ("properties.lens_properties", "properties.property_groups", "preferences")
 _MODULES = (
-    "properties.lens_properties",
-    "properties.property_groups",
-    "preferences",
+    *_DATA_MODULES,
     "viewport.levels_preview",
     "engines.render_engine",
     "operators.window_run",
@@ -48,9 +47,10 @@ _MODULES = (
 _loaded: list[ModuleType] = []
 
 
-def register() -> None:
+def register(data_only: bool = False) -> None:
+    """`data_only`: what files hold of Lodestone, for jobs that draw nothing in Blender."""
     try:
-        for name in _MODULES:
+        for name in _DATA_MODULES if data_only else _MODULES:
             module = importlib.import_module(f"{__name__}.{name}")
             module.register()
             _loaded.append(module)

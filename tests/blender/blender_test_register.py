@@ -89,6 +89,18 @@ class Register(unittest.TestCase):
             panels.register = original
         self.assertEqual(traces(), [])
 
+    def test_jobs_without_a_window_register_what_files_hold_alone(self):
+        addon_utils.disable("lodestone", default_set=True)
+        addon = importlib.import_module("lodestone")
+        addon.register(data_only=True)
+        try:
+            self.assertIn("Scene", traces())
+            self.assertEqual([name for name in traces() if "_OT_" in name or "ops." in name], [])
+            self.assertEqual([name for name in traces() if "_PT_" in name], [])
+        finally:
+            addon.unregister()
+        self.assertEqual(traces(), [])
+
     def test_stock_panels_join_the_engine(self):
         blender_scenes.enable()
         joined = [name for name in traces() if name.endswith("COMPAT_ENGINES")]

@@ -151,6 +151,10 @@ LightArrival light_arrival(const Light& light, const glm::dvec3& point, const gl
     return {energy * shares.surface, energy * shares.head_on};
 }
 
+double most_in_spread(const Light& area) {
+    return in_spread(area, 1);
+}
+
 double display_step(double radiance) {
     // Law: one step of an 8-bit display.
     constexpr double kStep = 1.0 / 255;

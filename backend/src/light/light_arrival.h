@@ -29,6 +29,9 @@ struct LightArrival {
 /// area that is near as a few parts. Of a lamp that is all behind the surface nothing arrives.
 LightArrival light_arrival(const Light& light, const glm::dvec3& point, const glm::dvec3& normal);
 
+/// How many times as much light an area sends along its axis as without a spread.
+double most_in_spread(const Light& area);
+
 /// The change of linear radiance that one step of an 8-bit display shows at this radiance.
 double display_step(double radiance);
 

@@ -193,6 +193,13 @@ std::vector<PointSighting> add_missing_lit_points(const LitScene& scene, const V
     return CoverageSearch(scene, view, divisible, wanted, grid).run(job);
 }
 
+std::vector<Box3> spoken_boxes(std::span<const PointSighting> sightings, size_t count) {
+    std::vector<Box3> out(count);
+    for (const PointSighting& seen : sightings)
+        out[seen.point].add(seen.position);
+    return out;
+}
+
 void lend_lit_points(std::span<const PointSighting> sightings, const LightRegions& regions,
                      std::vector<LitPoint>& points, LightShares& shares) {
     // Pieces are in the order of the drawn things.

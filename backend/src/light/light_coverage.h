@@ -3,8 +3,8 @@
 // so that no part of a thing is left without the lamps of its room.
 #pragma once
 
-#include "light/light_regions.h"
 #include "light/lit_points.h"
+#include "light/region/light_regions.h"
 
 namespace lodestone::light {
 
@@ -15,9 +15,8 @@ struct PointSighting {
     uint32_t point = 0;
 };
 
-/// Looks through every pixel of the wanted cells up to four times, half a million times in all. A
-/// point that is seen is
-/// alone if no lit point of the same thing, near it (reach_beside) and facing about the same way,
+/// Looks through every pixel of the wanted cells once, half a million times in all. A point that is
+/// seen is alone if no lit point of the same thing, near it (reach_beside) and facing about the same way,
 /// sees it. Around it there are more looks (at most twice as many in all), and points that are
 /// alone become lit points, at most as many as there were (then evenly chosen ones). Returns the
 /// sightings of things that `divisible` allows to be cut. Any number of threads gives the same
@@ -26,6 +25,9 @@ std::vector<PointSighting> add_missing_lit_points(const LitScene& scene, const V
                                                   std::span<const uint8_t> divisible,
                                                   std::span<const uint8_t> wanted, LitGrid& grid,
                                                   const Job& job);
+
+/// By point of `count`: the places that were seen and that it stands for.
+std::vector<Box3> spoken_boxes(std::span<const PointSighting> sightings, size_t count);
 
 /// Lends points where a thing is cut between a sighting and its point: the piece that is seen gets
 /// copies of the point in its region, at the nearest place where it was seen, and of its shares.

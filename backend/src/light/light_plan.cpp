@@ -3,9 +3,10 @@
 
 #include "light/light_arrival.h"
 #include "light/light_coverage.h"
-#include "light/light_regions.h"
 #include "light/lit_cells.h"
 #include "light/lit_points.h"
+#include "light/region/bound_lights.h"
+#include "light/region/light_regions.h"
 #include "light/sun_plan.h"
 
 #include <algorithm>
@@ -110,10 +111,56 @@ double rays_to(const LightTree& tree, const std::vector<GroupLight>& lights) {
     return sum;
 }
 
-/// The groups of regions, of lights that are nodes of the tree; things without region are in the
-/// first one.
+/// Numbers the groups of a plan, each list of lights once.
+class GroupNumbers {
+public:
+    explicit GroupNumbers(LightPlan& plan) : plan_(plan) {}
+
+    uint32_t of(std::vector<GroupLight> lights) {
+        const auto [at, fresh] =
+            known_.try_emplace(std::move(lights), static_cast<uint32_t>(plan_.groups.size()));
+        if (fresh)
+            plan_.groups.push_back(at->first);
+        return at->second;
+    }
+
+private:
+    LightPlan& plan_;
+    std::map<std::vector<GroupLight>, uint32_t> known_;
+};
+
+/// Groups the things on which no point lies: of the lamps that matter anywhere they have those that
+/// may matter where they are.
+void group_by_place(const LightTree& tree, const std::vector<GroupLight>& mattering,
+                    std::span<const Bound> bounds, double pixel_error, GroupNumbers& numbers,
+                    std::vector<LitPiece>& pieces) {
+    std::vector<const Light*> lamps;
+    for (const GroupLight& one : mattering)
+        lamps.push_back(&tree.nodes[one.light].light);
+    std::vector<uint32_t> things;
+    std::vector<uint32_t> group_of(bounds.size(), kNoRegion);
+    for (const LitPiece& piece : pieces) {
+        if (piece.group == kNoRegion)
+            things.push_back(piece.drawn);
+    }
+    for (const BoundGroup& group : group_by_bounds(lamps, bounds, things, pixel_error)) {
+        std::vector<GroupLight> lights;
+        for (const uint32_t lamp : group.lamps)
+            lights.push_back(mattering[lamp]);
+        const uint32_t number = numbers.of(std::move(lights));
+        for (const uint32_t thing : group.things)
+            group_of[thing] = number;
+    }
+    for (LitPiece& piece : pieces) {
+        if (piece.group == kNoRegion)
+            piece.group = group_of[piece.drawn];
+    }
+}
+
+/// The groups of regions, and of things without region, of lights that are nodes of the tree.
 LightPlan grouped_plan(const RegionLights& regions, std::span<const LitPoint> points,
-                       const LightRegions& parts) {
+                       const LightRegions& parts, std::span<const Bound> bounds,
+                       double pixel_error) {
     LightPlan plan;
     std::vector<std::vector<GroupLight>> lists;
     for (size_t region = 0; region < regions.cut.size(); ++region) {
@@ -127,18 +174,14 @@ LightPlan grouped_plan(const RegionLights& regions, std::span<const LitPoint> po
     }
     plan.lights_each /= static_cast<double>(points.size());
     plan.shadow_rays /= static_cast<double>(points.size());
-    plan.groups.push_back(mattering_lamps(regions, false));
-    std::map<std::vector<GroupLight>, uint32_t> known{{plan.groups[0], 0}};
-    std::vector<uint32_t> group_of;
-    for (std::vector<GroupLight>& list : lists) {
-        const auto [at, fresh] = known.try_emplace(list, static_cast<uint32_t>(plan.groups.size()));
-        if (fresh)
-            plan.groups.push_back(std::move(list));
-        group_of.push_back(at->second);
-    }
+    GroupNumbers numbers(plan);
     plan.pieces = parts.pieces;
-    for (LitPiece& piece : plan.pieces)
-        piece.group = piece.group == kNoRegion ? 0 : group_of[piece.group];
+    for (LitPiece& piece : plan.pieces) {
+        if (piece.group != kNoRegion)
+            piece.group = numbers.of(lists[piece.group]);
+    }
+    group_by_place(regions.tree, mattering_lamps(regions, false), bounds, pixel_error, numbers,
+                   plan.pieces);
     return plan;
 }
 
@@ -169,10 +212,11 @@ void number_lights(const LightTree& tree, LightPlan& plan) {
 
 /// `grouped`: things may be grouped, where that is worth it.
 LightPlan plan_of(const RegionLights& regions, std::span<const LitPoint> points,
-                  const LightRegions& parts, size_t things, bool grouped) {
-    LightPlan plan = single_plan(regions, things);
+                  const LightRegions& parts, std::span<const Bound> bounds, double pixel_error,
+                  bool grouped) {
+    LightPlan plan = single_plan(regions, bounds.size());
     if (grouped) {
-        LightPlan groups = grouped_plan(regions, points, parts);
+        LightPlan groups = grouped_plan(regions, points, parts, bounds, pixel_error);
         if (groups.groups.size() > 1 && groups.shadow_rays < kWorth * plan.shadow_rays)
             plan = std::move(groups);
     }
@@ -264,7 +308,8 @@ LightPlan plan_lamps(const LitScene& scene, LitGrid& grid, std::span<const Light
         const Light& light = tree.nodes[i].light;
         weights.push_back(shadow_rays(light, finest_grid(light, demands.grids.rays)));
     }
-    const LightRegions regions = make_light_regions(bounds, divisible, weights, shares, points);
+    const LightRegions regions = make_light_regions(bounds, divisible, weights, shares,
+                                                    spoken_boxes(sightings, points.size()), points);
     lend_lit_points(sightings, regions, points, shares);
     const LightCut cut = cut_lights(tree, points, shares, regions.count, reaches, pixel_error, job);
     GridDemands finely = demands.grids;
@@ -274,7 +319,8 @@ LightPlan plan_lamps(const LitScene& scene, LitGrid& grid, std::span<const Light
         [&](const Light& light, const LitPoint& point) { return scene.soft(light, point); }, view,
         finely, job);
     // Added points look at corners: the mean is that of the evenly spread ones.
-    return plan_of({tree, cut, grids}, std::span(points).first(even), regions, drawn.size(), many);
+    return plan_of({tree, cut, grids}, std::span(points).first(even), regions, bounds, pixel_error,
+                   many);
 }
 
 }  // namespace

@@ -64,8 +64,7 @@ struct PlannedSun {
 
 struct LightPlan {
     std::vector<Light> lights;  // lamps, and lights that stand for several
-    /// The first group lights what no point lies on: by all lamps that matter anywhere. A single
-    /// group lights everything; it needs no group in the renderer.
+    /// A single group lights everything; it needs no group in the renderer.
     std::vector<std::vector<GroupLight>> groups;
     /// In the order of the drawn things; all pieces of a thing together.
     std::vector<LitPiece> pieces;
@@ -112,7 +111,8 @@ inline constexpr size_t kManyLamps = 8;
 /// its lights; so a patch of light smaller than the distance of points can be missed. What lamps
 /// light here and there (the floor of many rooms, a ground) is cut into boxes. With bounces, points
 /// that send light to what the view shows are used, too. A lamp that matters to no point is in no
-/// group.
+/// group; things on which no point lies have of the others those that may matter where they are
+/// (bound_lights.h).
 /// Fewer than 8 lamps are not grouped: those that matter anywhere light everything.
 /// Suns have as many rays as the penumbrae need that the view shows.
 ///

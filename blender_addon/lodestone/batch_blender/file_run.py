@@ -292,7 +292,7 @@ def main() -> None:
     job = FileJob.load(Path(sys.argv[sys.argv.index("--") + 1]).read_text("utf-8"))
     process_session.follow(job.supervisor)
     process_session.speak_in_lines()
-    lodestone.register()
+    lodestone.register(data_only=True)
     run = FileRun(job)
     signal.signal(signal.SIGTERM, lambda number, frame: run.work.stop())
     run.run()

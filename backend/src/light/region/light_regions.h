@@ -19,9 +19,10 @@ inline constexpr uint32_t kNoRegion = ~uint32_t{0};
 /// their neighbors. A thing that `divisible` allows is cut where that makes shorter lists of lamps
 /// for its points (where the light of lamps ends, too), into at most 128 boxes that fill its bound;
 /// where very many lamps light all of it, into at most 32.
-/// `weights`: the shadow rays to each lamp.
+/// `weights`: the shadow rays to each lamp. `spoken`: by point, where it stands for what is seen; a
+/// box is lit by the lamps of all points that do so within it.
 LightRegions make_light_regions(std::span<const Bound> bounds, std::span<const uint8_t> divisible,
                                 std::span<const double> weights, const LightShares& shares,
-                                std::vector<LitPoint>& points);
+                                std::span<const Box3> spoken, std::vector<LitPoint>& points);
 
 }  // namespace lodestone::light
