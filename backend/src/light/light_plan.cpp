@@ -135,6 +135,7 @@ void group_by_place(const LightTree& tree, const std::vector<GroupLight>& matter
                     std::span<const Bound> bounds, double pixel_error, GroupNumbers& numbers,
                     std::vector<LitPiece>& pieces) {
     std::vector<const Light*> lamps;
+    lamps.reserve(mattering.size());
     for (const GroupLight& one : mattering)
         lamps.push_back(&tree.nodes[one.light].light);
     std::vector<uint32_t> things;

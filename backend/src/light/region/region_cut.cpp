@@ -82,6 +82,7 @@ public:
             }
         }
         std::vector<CutBox> out;
+        out.reserve(parts.size());
         for (RegionPart& part : parts)
             out.push_back({part.box, std::move(part.points)});
         return out;
@@ -136,7 +137,7 @@ private:
     double rays_to(const Words& lamps) const {
         double sum = 0;
         const size_t half = width_ / 2;
-        for (size_t i = 0; i < lamps.size(); ++i) {
+        for (size_t i = 0; half > 0 && i < lamps.size(); ++i) {
             double part = 0;
             for (uint64_t word = lamps[i]; word != 0; word &= word - 1)
                 part += weights_[64 * (i % half) + static_cast<size_t>(std::countr_zero(word))];

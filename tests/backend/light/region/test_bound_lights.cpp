@@ -42,6 +42,7 @@ Bound ball(const glm::dvec3& center, double radius = 0.5) {
 std::vector<BoundGroup> groups_of(const std::vector<Light>& lamps, const std::vector<Bound>& bounds,
                                   double pixel_error = 1) {
     std::vector<const Light*> pointers;
+    pointers.reserve(lamps.size());
     for (const Light& lamp : lamps)
         pointers.push_back(&lamp);
     std::vector<uint32_t> things(bounds.size());
@@ -118,6 +119,7 @@ TEST(BoundLights, ThingsAreLitByTheLampsOfTheirPlace) {
 
 TEST(BoundLights, ManyFaintLampsTogetherAreNotLeftOut) {
     std::vector<Light> lamps;
+    lamps.reserve(1000);
     for (int i = 0; i < 1000; ++i)
         lamps.push_back(lamp_at({0, 0, 50.0 + 0.01 * i}, 20));
     const std::vector<Bound> bounds{ball({0, 0, 0})};
