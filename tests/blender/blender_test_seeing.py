@@ -236,7 +236,9 @@ class Seeing(unittest.TestCase):
         self.assertGreater(render.actual_bytes, 1e6)
         self.assertLess(abs(render.predicted_bytes / render.actual_bytes - 1.0), 0.5)
         cost = json.loads((self.folder / "lodestone/file/cost.json").read_text())
-        self.assertEqual(set(cost), {"model", "parse", "trace", "memory", "trace_exact"})
+        ratios = {"parse", "trace", "memory", "trace_exact"}
+        self.assertEqual(set(cost), {"model", "cameras", *ratios})
+        self.assertEqual([set(one) for one in cost["cameras"].values()], [ratios])
         self.assertFalse(any("lodestone" in item.keys() for item in bpy.data.objects))
 
     def test_reading_keeps_the_scene_until_it_changes(self):

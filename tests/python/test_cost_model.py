@@ -128,17 +128,38 @@ class Cost(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             store = Path(folder)
             costs = cost_model.CostMemory().of(store)
-            self.assertEqual(costs.read(), cost_model.Ratios())
-            costs.write(cost_model.Ratios(2.0, 0.5, 1.0))
+            self.assertEqual(costs.read("Camera"), cost_model.Ratios())
+            costs.write("Camera", cost_model.Ratios(2.0, 0.5, 1.0))
             later = cost_model.CostMemory().of(store)
-            self.assertEqual(later.read(), cost_model.Ratios(2.0, 0.5, 1.0))
-            for text in ("", "[]", '{"parse": 1e9, "trace": "x", "memory": NaN}', "9" * 5000):
+            self.assertEqual(later.read("Camera"), cost_model.Ratios(2.0, 0.5, 1.0))
+            self.assertEqual(later.read("Other"), cost_model.Ratios(2.0, 0.5, 1.0))
+            for text in (
+                *("", "[]", '{"parse": 1e9, "trace": "x", "memory": NaN}', "9" * 70000),
+                *('{"model": 2, "cameras": %s}' % cameras for cameras in ("[1]", '{"Camera": 1}')),
+            ):
                 (store / cost_model.FILE).write_text(text)
                 later = cost_model.CostMemory().of(store)
-                self.assertEqual(later.read(), cost_model.Ratios(), text[:20])
+                self.assertEqual(later.read("Camera"), cost_model.Ratios(), text[:40])
         memory = cost_model.CostMemory()
-        memory.of(store).write(cost_model.Ratios(3.0))  # the folder is gone: still known here
-        self.assertEqual(memory.of(store).read().parse, 3.0)
+        memory.of(store).write(
+            "Camera", cost_model.Ratios(3.0)
+        )  # the folder is gone: still known here
+        self.assertEqual(memory.of(store).read("Camera").parse, 3.0)
+
+    def test_a_camera_before_dead_trees_says_nothing_of_another_that_was_asked(self):
+        with tempfile.TemporaryDirectory() as folder:
+            costs = cost_model.CostMemory().of(Path(folder))
+            costs.write("Near", cost_model.Ratios(trace=1.0))
+            costs.write("Far", cost_model.Ratios(trace=3.0))
+            for known in (costs, cost_model.CostMemory().of(Path(folder))):
+                self.assertEqual(known.read("Near").trace, 1.0)
+                self.assertEqual(known.read("Far").trace, 3.0)
+                self.assertEqual(known.read("New").trace, 3.0)
+            for number in range(200):
+                costs.write(f"Camera {number} \u2603" + 60 * "\u20ac", cost_model.Ratios(trace=2.0))
+            later = cost_model.CostMemory().of(Path(folder))
+            self.assertEqual(later.read("Near").trace, 2.0)  # forgotten: as the last
+            self.assertEqual(later.read("").trace, 2.0)
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ constexpr size_t kPieces = 128;
 constexpr double kFewRays = 6;
 // The most shadow rays that a cut may leave, in parts of those at all points.
 // Taste: a larger share cuts more often for less.
-constexpr double kWorthCutting = 0.8;
+constexpr double kWorthCutting = 0.9;
 // The shadow rays to the lamps of a box above which it is cut although all of them reach all of it.
 // Taste: fewer lamps have fewer far ones that others could stand for.
 constexpr double kManyRays = 100;
@@ -207,7 +207,8 @@ private:
         }
     }
 
-    /// Where the light of lamps begins or ends along an axis, as far as points speak.
+    /// Planes where the light of lamps begins or ends along an axis, as far as points speak: midway
+    /// to the next place that is spoken for.
     std::vector<double> ends_of_light(const SpokenOrder& order, int axis) const {
         std::vector<double> out;
         Words known(width_, 0);
@@ -221,13 +222,25 @@ private:
             return fresh;
         };
         for (const uint32_t point : order.rising_low) {
-            if (adds_lamp(point))
-                out.push_back(low_of(point, axis));
+            if (!adds_lamp(point))
+                continue;
+            const double begin = low_of(point, axis);
+            const auto before = std::upper_bound(
+                order.falling_high.begin(), order.falling_high.end(), begin,
+                [&](double at, uint32_t other) { return high_of(other, axis) < at; });
+            out.push_back(
+                before == order.falling_high.end() ? begin : (begin + high_of(*before, axis)) / 2);
         }
         known.assign(width_, 0);
         for (const uint32_t point : order.falling_high) {
-            if (adds_lamp(point))
-                out.push_back(std::nextafter(high_of(point, axis), kInfinity));
+            if (!adds_lamp(point))
+                continue;
+            const double end = high_of(point, axis);
+            const auto behind = std::upper_bound(
+                order.rising_low.begin(), order.rising_low.end(), end,
+                [&](double at, uint32_t other) { return at < low_of(other, axis); });
+            out.push_back(behind == order.rising_low.end() ? std::nextafter(end, kInfinity)
+                                                           : (end + low_of(*behind, axis)) / 2);
         }
         return out;
     }

@@ -5,9 +5,10 @@ one before.
 POV-Ray reads the texts and pictures that an export wrote, and keeps them: both take as long and as
 much as they are large. A sample takes longer with the root of the texts and with each shadow ray.
 Measured on one machine, in tracks of SuperTuxKart and generated nights; cost.json beside the levels
-keeps by how much the last picture differed. Not known before is how often rays go on through masks
-that are not cut out: where dead trees fill the picture it takes three times as long. Bounces gather
-light by rays at places as dense as their error asks for, and again from what these meet.
+keeps by how much the last picture of each camera differed. Not known before is how often rays go on
+through masks that are not cut out: where dead trees fill the picture it takes three times as long.
+Bounces gather light by rays at places as dense as their error asks for, and again from what these
+meet.
 """
 
 import json
@@ -46,7 +47,8 @@ _START_S = 0.6  # seconds by the clock, whatever is rendered
 _EMPTY_BYTES, _PIXEL_BYTES = 18e6, 16
 _LEAST_S = 0.05  # shorter times tell nothing
 _MOST = 100.0  # a picture whose ratio is larger was disturbed
-_MOST_BYTES = 4096
+_MOST_BYTES = 65536
+_MOST_CAMERAS = 64  # that are remembered
 
 
 @dataclass(frozen=True)
@@ -178,12 +180,15 @@ def learn(work: Work, measured: native.records.PovrayReport, before: Ratios) -> 
     )
 
 
+Costs = dict[str, Ratios]  # of the last picture by each camera, and of the last one under ""
+
+
 class CostMemory:
     """The ratios of times and bytes measured to those foretold, for each folder of levels: what
     this process knows, and what the folders hold."""
 
     def __init__(self) -> None:
-        self._last: dict[str, Ratios] = {}  # by folder
+        self._last: dict[str, Costs] = {}  # by folder
 
     def of(self, store: Path) -> "StoreCosts":
         """The costs of pictures by the levels in a folder."""
@@ -193,23 +198,29 @@ class CostMemory:
 class StoreCosts:
     """The costs of pictures by the levels in one folder."""
 
-    def __init__(self, last: dict[str, Ratios], store: Path) -> None:
+    def __init__(self, last: dict[str, Costs], store: Path) -> None:
         self._last, self._store = last, store
 
-    def read(self) -> Ratios:
-        """The ratios of the last picture; a file that is unreadable counts as none."""
-        key = str(self._store)
-        if key not in self._last:
-            self._last[key] = _from_file(self._store / FILE)
-        return self._last[key]
+    def read(self, camera: str) -> Ratios:
+        """The ratios of the last picture by a camera, else of the last picture; a file that is
+        unreadable counts as none."""
+        known = self._known()
+        return known.get(camera) or known.get("", Ratios())
 
-    def write(self, ratios: Ratios) -> None:
+    def write(self, camera: str, ratios: Ratios) -> None:
         """Keeps the ratios for the next picture. A folder that is not there or cannot be written to
         is no problem: then only this process knows."""
-        self._last[str(self._store)] = ratios
+        known = self._known()
+        for name in ("", camera):
+            known.pop(name, None)  # the last one goes to the end
+            known[name] = ratios
+        while len(known) > _MOST_CAMERAS:
+            del known[next(iter(known))]
+        cameras = {name: asdict(one) for name, one in known.items() if name}
+        text = json.dumps({"model": _MODEL, **asdict(ratios), "cameras": cameras})
         temporary = self._store / f".cost-{os.getpid()}.json"
         try:
-            temporary.write_text(json.dumps({"model": _MODEL, **asdict(ratios)}), "utf-8")
+            temporary.write_text(text, "utf-8")
             os.replace(temporary, self._store / FILE)
         except OSError:
             try:
@@ -217,16 +228,31 @@ class StoreCosts:
             except OSError:
                 pass
 
+    def _known(self) -> Costs:
+        key = str(self._store)
+        if key not in self._last:
+            self._last[key] = _from_file(self._store / FILE)
+        return self._last[key]
 
-def _from_file(path: Path) -> Ratios:
+
+def _from_file(path: Path) -> Costs:
     try:
         if path.stat().st_size > _MOST_BYTES:
-            return Ratios()
+            return {}
         value = json.loads(path.read_text("utf-8"))
     except (OSError, ValueError):
-        return Ratios()
+        return {}
     if not isinstance(value, dict) or value.get("model") != _MODEL:
-        return Ratios()
+        return {}
+    cameras = value.get("cameras")
+    found = {"": _ratios(value)}
+    for name, one in cameras.items() if isinstance(cameras, dict) else ():
+        if isinstance(one, dict):
+            found[name] = _ratios(one)
+    return found
+
+
+def _ratios(value: dict[str, Any]) -> Ratios:
     found = {}
     for field in fields(Ratios):
         ratio = value.get(field.name)

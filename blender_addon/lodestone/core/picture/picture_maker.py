@@ -189,11 +189,11 @@ def make_picture(
 ) -> Picture:
     """Cuts, exports into folder and renders folder/picture.exr. `new_job(stage)` is called before
     each long call and gives its Job. Raises LodestoneError; then no new picture is there.
-    `costs`: what it takes is predicted from, and remembered with, the last picture of a store.
+    `costs`: what it takes is predicted from, and remembered with, the last picture of the camera.
     `live`: what is drawn into meanwhile. `chosen` is told how many triangles are drawn."""
     exported = _cut_and_export(model, camera, size, settings, folder, new_job("Export"))
     parts, in_use, work, quality = exported
-    ratios = cost_model.Ratios() if costs is None else costs.read()
+    ratios = cost_model.Ratios() if costs is None else costs.read(camera.name)
     predicted = cost_model.predict(work, ratios)
     chosen(parts["cut"]["triangles"])
     wanted, job = (str(folder), PICTURE, settings.povray()), new_job("Trace")
@@ -206,7 +206,7 @@ def make_picture(
     made = Picture(folder / PICTURE, parts, in_use, problems)
     if not (settings.false_color or settings.covered_only):
         if costs is not None:
-            costs.write(cost_model.learn(work, ran, ratios))
+            costs.write(camera.name, cost_model.learn(work, ran, ratios))
         for cause in slow_causes.found(work, quality, ran.parse_cpu_s + ran.trace_cpu_s):
             problems.extend([cause.problem])
             if cause.remedy is not None:
