@@ -68,7 +68,7 @@ class Session(unittest.TestCase):
         session, model = addon_session(), Model()
         session.changed_shapes.note(["Cube"])
         session.checks["A"] = Check(())
-        session.costs.of(Path("/nowhere/at/all")).write(Ratios(2.0))
+        session.costs.of(Path("/nowhere/at/all")).write("Camera", Ratios(2.0))
         session.kept_models.put("A", Kept(model, None, {}, 1))
         session.part(Part)
         session.part(Plain)["A"] = 1

@@ -205,7 +205,7 @@ class StoreCosts:
         """The ratios of the last picture by a camera, else of the last picture; a file that is
         unreadable counts as none."""
         known = self._known()
-        return known.get(camera) or known.get("", Ratios())
+        return known[camera] if camera in known else known.get("", Ratios())
 
     def write(self, camera: str, ratios: Ratios) -> None:
         """Keeps the ratios for the next picture. A folder that is not there or cannot be written to
