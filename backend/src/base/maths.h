@@ -102,6 +102,11 @@ struct Box3 {
     }
     glm::dvec3 center() const { return 0.5 * (low + high); }
     glm::dvec3 size() const { return empty() ? glm::dvec3(0.0) : high - low; }
+    /// 0, 1 or 2; of axes that are as long the first.
+    int longest_axis() const {
+        const glm::dvec3 edges = size();
+        return edges.x >= edges.y && edges.x >= edges.z ? 0 : edges.y >= edges.z ? 1 : 2;
+    }
 };
 
 /// The place of a thing: a sphere and an axis-aligned box in the same frame; both contain it.

@@ -39,8 +39,7 @@ void PartTree::add(std::span<const Box3> boxes, uint32_t begin, uint32_t end) {
     const size_t at = parts_.size();
     parts_.push_back(part);
     if (end - begin > kFewTogether) {
-        const glm::dvec3 size = middles.size();
-        const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+        const int axis = middles.longest_axis();
         const uint32_t half = begin + (end - begin) / 2;
         const auto place = [&](uint32_t i) { return order_.begin() + static_cast<ptrdiff_t>(i); };
         std::nth_element(place(begin), place(half), place(end), [&](uint32_t a, uint32_t b) {

@@ -103,8 +103,8 @@ inline constexpr size_t kManyLamps = 8;
 /// Groups drawn things by the lights that light them, each with a grid of rays for that group.
 /// POV-Ray shades a group with its own lamps alone, while everything in between casts shadows.
 ///
-/// Rays are cast from lamps to points that the view shows: one in every 20 pixels, at least 12,000,
-/// in mirrors and behind glass too, and as many more as needed so that every part of a thing that a
+/// Rays are cast from lamps to points that the view shows: one in every 20 pixels, at least 12,000
+/// (in small pictures one in every 8), in mirrors and behind glass too, and as many more as needed so that every part of a thing that a
 /// pixel shows sees one (light_coverage.h). They tell which lamps reach which points, what they are
 /// worth in all the light there, and by how much a light that stands for several lamps differs from
 /// these (cut_lights). A lamp that reaches no point of an object, nor any beside these, is not among

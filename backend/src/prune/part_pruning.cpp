@@ -134,8 +134,7 @@ void spread(const std::vector<Crowd::CrowdPart>& parts, std::span<uint32_t> list
     Box3 box;
     for (const uint32_t part : list)
         box.add(parts[part].center);
-    const glm::dvec3 size = box.size();
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const int axis = box.longest_axis();
     const size_t half = list.size() / 2;
     const auto before = [&](uint32_t a, uint32_t b) {
         const double left = parts[a].center[axis];

@@ -95,3 +95,17 @@ TEST(Maths, BoxContainsItsFacesAndNothingBeyond) {
     EXPECT_FALSE(box.contains({1, 4, 6.5}));
     EXPECT_FALSE(box.contains({1, std::nan(""), 4}));
 }
+
+TEST(Maths, TheLongestAxisIsTheFirstOfThoseThatAreAsLong) {
+    const auto axis_of = [](const glm::dvec3& size) {
+        Box3 box;
+        box.add(glm::dvec3(1));
+        box.add(glm::dvec3(1) + size);
+        return box.longest_axis();
+    };
+    EXPECT_EQ(Box3().longest_axis(), 0);
+    EXPECT_EQ(axis_of({0, 0, 0}), 0);
+    EXPECT_EQ(axis_of({3, 2, 1}), 0);
+    EXPECT_EQ(axis_of({2, 3, 3}), 1);
+    EXPECT_EQ(axis_of({1, 2, 3}), 2);
+}

@@ -46,8 +46,7 @@ void BoundTree::build(uint32_t part, uint32_t first, uint32_t count) {
         parts_[part].count = count;
         return;
     }
-    const glm::dvec3 size = middles.size();
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const int axis = middles.longest_axis();
     const uint32_t half = count / 2;
     const auto begin = order_.begin() + first;
     std::nth_element(begin, begin + half, begin + count, [&](uint32_t a, uint32_t b) {

@@ -68,7 +68,7 @@ private:
         double left_out = 0;
         for (const auto& [most, lamp] : weakest_first) {
             left_out += most;
-            if (left_out > allowed_.x)
+            if (!(left_out <= allowed_.x))  // what is no number is not left out
                 out.push_back(lamp);
         }
         std::sort(out.begin(), out.end());
@@ -103,8 +103,7 @@ private:
         Box3 box;
         for (const uint32_t thing : group.things)
             box.add(bounds_[thing].center);
-        const glm::dvec3 size = box.size();
-        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const int axis = box.longest_axis();
         std::vector<uint32_t> things = group.things;
         std::stable_sort(things.begin(), things.end(), [&](uint32_t a, uint32_t b) {
             return bounds_[a].center[axis] < bounds_[b].center[axis];

@@ -98,8 +98,7 @@ private:
             ++next_;
             return;
         }
-        const glm::dvec3 size = box.size();
-        const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+        const int axis = box.longest_axis();
         std::stable_sort(things.begin(), things.end(), [&](uint32_t a, uint32_t b) {
             return middles_[a][axis] < middles_[b][axis];
         });

@@ -309,10 +309,7 @@ private:
             box.add(points_[point].position);
         SplitPlane plane;
         plane.cost = std::numeric_limits<double>::infinity();
-        for (int axis = 1; axis < 3; ++axis) {
-            if (box.size()[axis] > box.size()[plane.axis])
-                plane.axis = axis;
-        }
+        plane.axis = box.longest_axis();
         std::vector<double> places;
         places.reserve(points.size());
         for (const uint32_t point : points)

@@ -82,8 +82,7 @@ private:
         parts_.push_back(part);
         if (count <= 16)
             return index;
-        const glm::dvec3 size = part.box.size();
-        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const int axis = part.box.longest_axis();
         const auto begin = points_.begin() + static_cast<std::ptrdiff_t>(first);
         const auto half = static_cast<std::ptrdiff_t>(count / 2);
         std::nth_element(
