@@ -104,15 +104,15 @@ inline constexpr size_t kManyLamps = 8;
 /// POV-Ray shades a group with its own lamps alone, while everything in between casts shadows.
 ///
 /// Rays are cast from lamps to points that the view shows: one in every 20 pixels, at least 12,000
-/// (in small pictures one in every 8), in mirrors and behind glass too, and as many more as needed so that every part of a thing that a
-/// pixel shows sees one (light_coverage.h). They tell which lamps reach which points, what they are
-/// worth in all the light there, and by how much a light that stands for several lamps differs from
-/// these (cut_lights). A lamp that reaches no point of an object, nor any beside these, is not among
-/// its lights; so a patch of light smaller than the distance of points can be missed. What lamps
-/// light here and there (the floor of many rooms, a ground) is cut into boxes. With bounces, points
-/// that send light to what the view shows are used, too. A lamp that matters to no point is in no
-/// group; things on which no point lies have of the others those that may matter where they are
-/// (bound_lights.h).
+/// (in small pictures one in every 8), in mirrors and behind glass too, and as many more as needed
+/// so that every part of a thing that a pixel shows sees one (light_coverage.h). They tell which
+/// lamps reach which points, what they are worth in all the light there, and by how much a light
+/// that stands for several lamps differs from these (cut_lights). A lamp that reaches no point of
+/// an object, nor any beside these, is not among its lights; so a patch of light smaller than the
+/// distance of points can be missed. What lamps light here and there (the floor of many rooms, a
+/// ground) is cut into boxes. With bounces, points that send light to what the view shows are used,
+/// too. A lamp that matters to no point is in no group; things on which no point lies have of the
+/// others those that may matter where they are (bound_lights.h).
 /// Fewer than 8 lamps are not grouped: those that matter anywhere light everything.
 /// Suns have as many rays as the penumbrae need that the view shows.
 ///
