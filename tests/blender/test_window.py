@@ -83,6 +83,9 @@ class Window(unittest.TestCase):
     def test_seeing(self):
         self.succeeds(self.blender("window_seeing.py", "--enable-event-simulate", *SMALL))
 
+    def test_writing_is_allowed_after_a_render_that_began_while_a_panel_was_drawn(self):
+        self.succeeds(self.blender("window_whole_panels.py", *SMALL))
+
     def test_viewport(self):
         child = self.blender("window_viewport.py", *SMALL)
         code = child.wait(240)

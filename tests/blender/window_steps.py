@@ -30,7 +30,7 @@ def window():
 
 
 def takes_operators():
-    """Whether Blender takes operators now: a render that just ended may still hold its data."""
+    """Whether Blender takes operators now: not amid a panel, or while a render holds its data."""
     try:
         with window():
             bpy.ops.ed.undo_push(message="Step")

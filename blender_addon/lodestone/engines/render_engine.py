@@ -36,7 +36,7 @@ from ..core.session.last_check import Check
 from ..core.session.last_render import LastRender
 from ..core.store import motion_file, store_path
 from ..viewport import levels_preview
-from . import render_job
+from . import render_job, whole_panels
 
 # Where each stage starts on the progress bar, and how much of it it takes
 _SHARES = {"Levels": (0.0, 0.4), "Export": (0.4, 0.1), "Parse": (0.5, 0.5), "Trace": (0.5, 0.5)}
@@ -100,10 +100,11 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
     bl_use_shading_nodes_custom = False
 
     def update(self, data, depsgraph):
-        self.lodestone_blend = data.filepath  # bpy.data is out of bounds inside render()
-        self.lodestone_libraries = Problems()
-        picture_requirements.names(data, self.lodestone_libraries)
-        picture_requirements.libraries(data.libraries, data.filepath, self.lodestone_libraries)
+        with whole_panels.engine_works():
+            self.lodestone_blend = data.filepath  # bpy.data is out of bounds inside render()
+            self.lodestone_libraries = Problems()
+            picture_requirements.names(data, self.lodestone_libraries)
+            picture_requirements.libraries(data.libraries, data.filepath, self.lodestone_libraries)
 
     def view_update(self, context, depsgraph):
         levels_preview.update(self, context, depsgraph)
@@ -112,25 +113,30 @@ class LODESTONE_RE_povray(bpy.types.RenderEngine):
         levels_preview.draw(self, context, depsgraph)
 
     def render(self, depsgraph):
+        with whole_panels.engine_works():
+            _render(self, depsgraph)
+
+
+def _render(engine, depsgraph):
+    try:
+        run = _Run(engine, depsgraph, addon_session().part(RenderState))
+        if run.failed_before:
+            return
         try:
-            run = _Run(self, depsgraph, addon_session().part(RenderState))
-            if run.failed_before:
-                return
-            try:
-                run.render()
-            except Refused as error:
-                run.fail(error.code, str(error))
-            except native.LodestoneError as error:
-                run.fail("picture_failed", str(error))
-            except UnicodeDecodeError as error:
-                run.fail("unreadable_name", sentence(error))
-        except Stopped:
-            pass
-        except native.LodestoneError as error:  # the library itself is missing
-            self.report({"ERROR"}, str(error))
-        except Exception as error:
-            traceback.print_exc()
-            self.report({"ERROR"}, f"Lodestone failed: {error!r} (see the console)")
+            run.render()
+        except Refused as error:
+            run.fail(error.code, str(error))
+        except native.LodestoneError as error:
+            run.fail("picture_failed", str(error))
+        except UnicodeDecodeError as error:
+            run.fail("unreadable_name", sentence(error))
+    except Stopped:
+        pass
+    except native.LodestoneError as error:  # the library itself is missing
+        engine.report({"ERROR"}, str(error))
+    except Exception as error:
+        traceback.print_exc()
+        engine.report({"ERROR"}, f"Lodestone failed: {error!r} (see the console)")
 
 
 class _Run:
@@ -455,6 +461,7 @@ _ENDS = ("render_complete", "render_cancel")
 _HANDLERS = (
     ("load_pre", _forget),
     *((name, _end_render) for name in ("render_init", *_ENDS)),
+    *whole_panels.HANDLERS,
     ("render_pre", _hide_pencil),
     *((name, _show_pencil) for name in ("render_post", *_ENDS)),
 )
@@ -484,5 +491,6 @@ def unregister():
 
 def _leave():
     """No render runs any more that could use what is remembered."""
+    whole_panels.end()
     end_session()
     _unregister()
