@@ -4,6 +4,7 @@
 import math
 import tempfile
 import unittest
+import unittest.mock
 from array import array
 from pathlib import Path
 from types import SimpleNamespace
@@ -98,9 +99,9 @@ class World(unittest.TestCase):
         self.tree.links.new(node.outputs[0], self.tree.nodes["World Output"].inputs["Surface"])
         return node
 
-    def close(self, values, expected):
+    def close(self, values, expected, share=1e-5):
         for value, other in zip(values, expected, strict=True):
-            self.assertAlmostEqual(value, other, places=5)
+            self.assertAlmostEqual(value, other, delta=share * max(1.0, abs(other)))
 
     def test_of_two_outputs_that_of_cycles_counts(self):
         self.tree.nodes["World Output"].target = "EEVEE"
@@ -140,25 +141,95 @@ class World(unittest.TestCase):
         self.tree.links.new(path.outputs["Is Camera Ray"], mix.inputs["Fac"])
         self.assertIn("world_camera_rays", self.extracted()[1])
 
-    def test_a_sky_has_its_sun_as_a_light(self):
+    def sky_texture(self, kind="NISHITA", **values):
+        node = self.tree.nodes.new("ShaderNodeTexSky")
+        node.sky_type = kind
+        for name, value in values.items():
+            setattr(node, name, value)
+        self.tree.links.new(node.outputs[0], self.background.inputs["Color"])
+        return node
+
+    def taken(self, store=""):
+        """(World, lights, pictures, codes)"""
         from lodestone.bridge.world import world_background
         from lodestone.core.problems import Problems
 
-        sky = self.tree.nodes.new("ShaderNodeTexSky")
-        sky.sky_type, sky.sun_elevation, sky.sun_rotation = "NISHITA", math.radians(30), 0.5
-        self.tree.links.new(sky.outputs[0], self.background.inputs["Color"])
+        suns, pictures, problems = [], [], Problems()
+        taker = SimpleNamespace(
+            add_light=suns.append, add_picture=lambda *_, **given: pictures.append(given) or 0
+        )
+        found = world_background.extract(taker, self.world, problems, store=store)
+        return found, suns, pictures, [problem.code for problem in problems]
+
+    def test_a_sky_has_its_sun_as_a_light(self):
+        sky = self.sky_texture(sun_elevation=math.radians(30), sun_rotation=0.5)
         self.background.inputs["Strength"].default_value = 0.1
-        suns = []
-        taker = SimpleNamespace(add_light=suns.append, add_picture=lambda *_, **__: 0)
-        problems = Problems()
-        world_background.extract(taker, self.world, problems)
-        (sun,) = suns
-        self.close(sun.color, (13.999, 11.116, 7.899))
+        _, (sun,), _, codes = self.taken()
+        self.close(sun.color, (13.999, 11.116, 7.899), 0.004)
         self.close(sun.direction, (-0.41519, -0.76001, -0.5))
-        self.assertIn("world_sky", [problem.code for problem in problems])
+        self.assertNotIn("world_sky", codes)
         sky.sun_disc = False
-        world_background.extract(taker, self.world, problems)
-        self.assertEqual(len(suns), 1)
+        self.assertEqual(self.taken()[1], [])
+
+    def test_a_sky_is_drawn_as_blender_draws_it(self):
+        from lodestone.bridge.world import drawn_sky, sky_texture
+
+        node = self.sky_texture(sun_elevation=math.radians(30), sun_rotation=math.radians(90))
+        sky = drawn_sky.drawn_sky(node, 128, 64, "")
+        sums = [0.0, 0.0, 0.0]  # of level ground
+        for row in range(32):
+            high = math.pi * (row + 0.5) / 64
+            weight = math.sin(high) * math.cos(high) * (math.pi / 64) ** 2 / math.pi
+            for column in range(128):
+                turn = 2.0 * math.pi * column / 128
+                flat = math.cos(high)
+                at = (flat * math.cos(turn), flat * math.sin(turn), math.sin(high))
+                sums = [sum_ + weight * value for sum_, value in zip(sums, sky.color(*at))]
+        mean = sky_texture.mean_of_sky(node)
+        self.close([s / m for s, m in zip(sums, mean)], (1.0, 1.0, 1.0), 0.04)
+        self.assertEqual(sky.color(0.0, 0.0, -1.0), (0.0, 0.0, 0.0))  # below the horizon
+        beside = [sum(sky.color(x, y, 0.5)) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+        self.assertEqual(max(beside), beside[0])  # toward the sun
+
+    def test_skies_of_all_kinds_are_brightest_around_their_sun(self):
+        from lodestone.bridge.world import drawn_sky
+
+        for kind in ("PREETHAM", "HOSEK_WILKIE"):
+            node = self.sky_texture(kind, sun_direction=(0.0, 0.8, 0.6))
+            sky = drawn_sky.drawn_sky(node, 128, 64, "")
+            beside = [sum(sky.color(x, y, 0.75)) for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+            self.assertEqual(max(beside), beside[1], kind)
+
+    def test_a_drawn_sky_is_kept_beside_the_levels(self):
+        from lodestone.bridge.world import drawn_sky
+
+        self.sky_texture(sun_elevation=0.3)
+        with tempfile.TemporaryDirectory() as store:
+            _, _, (first,), _ = self.taken(store)
+            (kept,) = Path(store, drawn_sky.FOLDER).glob("*.exr")
+            drawn_sky._drawn.clear()
+            with unittest.mock.patch.object(drawn_sky, "_draw", side_effect=AssertionError):
+                self.assertEqual(self.taken(store)[2], [first])
+            for damaged in (b"", kept.read_bytes()[:1000]):
+                drawn_sky._drawn.clear()
+                kept.write_bytes(damaged)
+                self.assertEqual(self.taken(store)[2], [first])
+            self.sky_texture(sun_elevation=0.4)
+            self.taken(store)
+            self.assertEqual(len(list(Path(store, drawn_sky.FOLDER).glob("*.exr"))), 2)
+
+    def test_where_blender_cannot_draw_a_sky_it_is_one_color_and_named(self):
+        from lodestone.bridge.world import drawn_sky
+
+        self.sky_texture(sun_elevation=math.radians(45), air_density=1.5)
+        for program in ("/nowhere/blender", "/bin/true", "/bin/false"):
+            fake = SimpleNamespace(
+                app=SimpleNamespace(binary_path=program, version_string=program), types=bpy.types
+            )
+            with unittest.mock.patch.object(drawn_sky, "bpy", fake):
+                _, (sun,), pictures, codes = self.taken()
+            self.assertIn("world_sky", codes, program)
+            self.close(sun.color, (146.51, 119.84, 92.14), 1e-4)
 
     def test_unknown_nodes_are_one_named_color(self):
         noise = self.tree.nodes.new("ShaderNodeTexNoise")

@@ -96,6 +96,9 @@ class Scenes:
     def blend(self, name: str) -> Path:
         """The file of a scene. Raises Missing."""
         path = self.cache / "scenes" / name / f"{name}.blend"
+        if name not in TRACKS and name not in NIGHTS:
+            # Where it is made: the paths of its images are relative to that.
+            path = self.cache / "data" / f"{name}.blend"
         if not path.is_file():
             path.parent.mkdir(parents=True, exist_ok=True)
             if name in TRACKS:
@@ -105,7 +108,7 @@ class Scenes:
                 inside += ["--python", INSIDE, "--", "night", name, path]
                 cpu_of(inside, path.with_suffix(".log"))
             else:
-                self._of_data()
+                self._of_data(path.parent)
         if not path.is_file():
             raise Missing(f"there is no scene {name}")
         return path
@@ -130,15 +133,11 @@ class Scenes:
                 package.unlink()
         return folder / GAME
 
-    def _of_data(self) -> None:
+    @staticmethod
+    def _of_data(out: Path) -> None:
         """The .blend files of the shared scenes, as samples/real_scenes.py makes them."""
-        out = self.cache / "data"
         command = ["/usr/bin/python3", ROOT / "samples" / "real_scenes.py", "--prepare-only"]
         cpu_of([*command, "--data", DATA, "--out", out], out / "prepare.log")
-        for blend in out.glob("*.blend"):
-            folder = self.cache / "scenes" / blend.stem
-            folder.mkdir(parents=True, exist_ok=True)
-            shutil.move(blend, folder / blend.name)
 
 
 class View:

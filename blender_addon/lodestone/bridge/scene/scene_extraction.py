@@ -23,7 +23,6 @@ from ..datablock_ids import name_of
 from ..listed_instances import Listed
 from ..motion.motion_sampling import Motion, Still
 from ..motion.shutter_motion import Moving
-from ..nodes.image_means import ImageMeans
 from ..world import scene_lights, world_background
 from . import collection_groups, glowing_faces, scene_camera
 from .leaf_objects import Leaf, Leaves, override_of
@@ -73,7 +72,7 @@ def extract(
     below them, unless the designer wants none. A scene that shows nothing gives a model whose root
     group is empty. `store`: the folder that keeps what was found of pictures; "": none does."""
     with _without_garbage_collection(), _kept_pictures(store):
-        return _extract(depsgraph, tick, still, structured)
+        return _extract(depsgraph, tick, still, structured, store)
 
 
 def _extract(
@@ -81,6 +80,7 @@ def _extract(
     tick: Callable[[], None],
     still: dict[str, list[str]] | None,
     structured: bool,
+    store: str,
 ) -> Extraction:
     scene = depsgraph.scene_eval
     settings = datablock_ids.settings_of(
@@ -106,7 +106,7 @@ def _extract(
                 model.structure(list(tree.collections))
         for name in tree.unplaced:
             report_outside(problems, name)
-        surroundings(model, scene, walk.found, problems)
+        surroundings(model, scene, walk.found, problems, store=store)
         _add_cameras(model, depsgraph)
         problems.keep(walk.shown.concerns)
     except BaseException:
@@ -193,16 +193,22 @@ def walked(
 
 
 def surroundings(
-    model: Any, scene: Any, found: Instances, problems: Problems, images: Any | None = None
+    model: Any,
+    scene: Any,
+    found: Instances,
+    problems: Problems,
+    images: Any | None = None,
+    store: str = "",
 ) -> None:
-    """Adds the lights that were found, what glows among them, and the world."""
+    """Adds the lights that were found, what glows among them, and the world. `images`, `store`: as
+    in world_background.extract()."""
     for light, matrix, name in found.lights:
         scene_lights.add(model, light, matrix, name, problems)
     eye = None if scene.camera is None else scene.camera.matrix_world.translation
     most = max(0, glowing_faces.MOST_LIGHTS - len(found.lights))
     for light in found.glows.lights(eye, problems, most):
         model.add_light(light)
-    around = world_background.extract(model, scene.world, problems, images or ImageMeans())
+    around = world_background.extract(model, scene.world, problems, images, store)
     model.set_world(
         around.color,
         scene.render.film_transparent,

@@ -8,7 +8,7 @@ from typing import Any
 from mathutils import Euler, Matrix, Vector
 
 from ..datablock_ids import name_of
-from .sky_texture import SkySun, mean_of_sky, sun_of_sky
+from .sky_texture import MeanSky, Sky, SkySun
 
 Value = Any  # a float for numbers, a tuple of three for colors and vectors
 Function = Callable[[Vector], Value]
@@ -22,12 +22,16 @@ class Unknown(Exception):
 
 class SkyNodes:
     """A world's nodes as functions. `texel(image, u, v)` gives the linear color of an image there,
-    or None. `approximated`: sentences by code on what of the nodes was followed only nearly.
-    `suns`: those of sky textures; while one is `lit_by`, its sky has the sun's light in place of
-    its own."""
+    or None; `sky(node)` the sky of a sky texture. `approximated`: sentences by code on what of the
+    nodes was followed only nearly. `suns`: those of sky textures; while one is `lit_by`, its sky
+    has the sun's light in place of its own."""
 
-    def __init__(self, texel: Callable[[Any, float, float], Value | None]) -> None:
-        self._texel = texel
+    def __init__(
+        self,
+        texel: Callable[[Any, float, float], Value | None],
+        sky: Callable[[Any], Sky] = MeanSky,
+    ) -> None:
+        self._texel, self._sky = texel, sky
         self.approximated: dict[str, str] = {}
         self.suns: list[SkySun] = []
         self.lit_by: SkySun | None = None
@@ -135,11 +139,10 @@ class SkyNodes:
         return sample
 
     def _tex_sky(self, node: Any, socket: Any) -> Function:
-        vector, tint = self.direction(node), mean_of_sky(node)
-        self.approximated["sky"] = "its sky is drawn in one color, the mean of a sky like it"
-        if node.sky_type != "NISHITA":
-            return lambda d: tint
-        sun = sun_of_sky(node)
+        vector, sky = self.direction(node), self._sky(node)
+        if not sky.drawn:
+            self.approximated["sky"] = "its sky is drawn in one color, the mean of a sky like it"
+        sun = sky.sun
         if sun is not None and node.inputs["Vector"].is_linked:
             self.approximated["sky_sun"] = "the sun of its sky is left out"
             sun = None
@@ -149,9 +152,7 @@ class SkyNodes:
         def sample(d: Vector) -> Value:
             if sun is not None and self.lit_by is sun:
                 return sun.light
-            height = Vector(vector(d)).normalized().z
-            share = min(1.0, max(0.0, 1.0 + 2.5 * height)) ** 3  # below the horizon: to black
-            return tuple(share * c for c in tint)
+            return sky.color(*vector(d))
 
         return sample
 

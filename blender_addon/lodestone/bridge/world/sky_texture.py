@@ -38,6 +38,37 @@ class SkySun:
     angle: float
 
 
+class Sky:
+    """A sky texture by the direction one looks in. `drawn`: as Blender draws it, else nearly."""
+
+    drawn = False
+    sun: SkySun | None = None
+
+    def color(self, x: float, y: float, z: float) -> Color:
+        """Its radiance without its sun; the direction may have any length."""
+        raise NotImplementedError
+
+
+class MeanSky(Sky):
+    """The mean of a sky like it, and below the horizon, where it has one, black."""
+
+    def __init__(self, node: Any) -> None:
+        self._tint = mean_of_sky(node)
+        self._ends = node.sky_type == "NISHITA"
+        light = _at(node.sun_elevation, 2) if has_sun(node) else (0.0, 0.0, 0.0)
+        if max(light) > 0.0:
+            red, green, blue = (node.sun_intensity * c for c in light)
+            self.sun = SkySun(direction_to_sun(node), (red, green, blue), node.sun_size)
+
+    def color(self, x: float, y: float, z: float) -> Color:
+        share = 1.0
+        if self._ends:
+            height = z / max(math.sqrt(x * x + y * y + z * z), 1e-12)
+            share = min(1.0, max(0.0, 1.0 + 2.5 * height)) ** 3
+        red, green, blue = self._tint
+        return (share * red, share * green, share * blue)
+
+
 def mean_of_sky(node: Any) -> Color:
     """The mean color of a sky texture node."""
     if node.sky_type == "NISHITA":
@@ -45,17 +76,16 @@ def mean_of_sky(node: Any) -> Color:
     return _SKIES.get(node.sky_type, _SKIES["HOSEK_WILKIE"])
 
 
-def sun_of_sky(node: Any) -> SkySun | None:
-    """The sun of a sky texture node; None when it has none or it is below the horizon."""
-    if node.sky_type != "NISHITA" or not node.sun_disc or node.sun_intensity <= 0.0:
-        return None
-    red, green, blue = (node.sun_intensity * c for c in _at(node.sun_elevation, 2))
-    if max(red, green, blue) <= 0.0:
-        return None
+def has_sun(node: Any) -> bool:
+    """Whether a sky texture node shows a sun."""
+    older = node.sky_type in _SKIES
+    return not older and node.sun_disc and node.sun_intensity > 0.0 and node.sun_size > 0.0
+
+
+def direction_to_sun(node: Any) -> tuple[float, float, float]:
     high, turn = node.sun_elevation, node.sun_rotation
     flat = math.cos(high)
-    direction = (flat * math.sin(turn), flat * math.cos(turn), math.sin(high))
-    return SkySun(direction, (red, green, blue), node.sun_size)
+    return (flat * math.sin(turn), flat * math.cos(turn), math.sin(high))
 
 
 def _at(elevation: float, column: int) -> Color:

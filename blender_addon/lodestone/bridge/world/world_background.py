@@ -18,8 +18,9 @@ from ..datablock_ids import name_of
 from ..nodes.image_means import ImageHeads, ImageMeans
 from ..nodes.image_pixels import read_pixels
 from ..nodes.node_values import NodeValues
+from .drawn_sky import drawn_sky
 from .sky_nodes import SkyNodes, Unknown
-from .sky_texture import mean_of_sky
+from .sky_texture import MeanSky, Sky, mean_of_sky
 
 MOST_BACKGROUNDS = 16  # in one world
 WIDTH, HEIGHT = 128, 64  # the size of the image that nodes are drawn into
@@ -37,20 +38,28 @@ class World:
 
 
 def extract(
-    model: Any, world: Any | None, problems: Problems, images: ImageMeans | None = None
+    model: Any,
+    world: Any | None,
+    problems: Problems,
+    images: ImageMeans | None = None,
+    store: str = "",
 ) -> World:
     """The world of an evaluated scene; no world is black. Adds the environment's picture to the
-    model. With ImageHeads only problems are looked for."""
+    model. With ImageHeads only problems are looked for. `store`: the folder of levels, which keeps
+    what takes long; "": none does."""
     if world is None:
         return World((0.0, 0.0, 0.0))
     if not world.use_nodes or world.node_tree is None:
         return World(tuple(world.color))
-    return _Reader(model, world, problems, images or ImageMeans()).read()
+    return _Reader(model, world, problems, images or ImageMeans(), store).read()
 
 
 class _Reader:
-    def __init__(self, model: Any, world: Any, problems: Problems, means: ImageMeans) -> None:
+    def __init__(
+        self, model: Any, world: Any, problems: Problems, means: ImageMeans, store: str
+    ) -> None:
         self._model = model
+        self._store = store
         self._world = world
         self._problems = problems
         self._means = means
@@ -135,7 +144,7 @@ class _Reader:
     def _drawn(self, parts: list["Part"], otherwise: str) -> World | None:
         """The sum of its backgrounds, times their shares of mixtures. None, and what is drawn
         `otherwise` is named, when a node is not known."""
-        nodes = SkyNodes(self._texel)
+        nodes = SkyNodes(self._texel, self._sky)
         try:
             light = _sum([_followed(nodes, part) for part in parts])
         except Unknown as unknown:
@@ -180,6 +189,13 @@ class _Reader:
                 angle=sun.angle,
             )
             self._model.add_light(given)
+
+    def _sky(self, node: Any) -> Sky:
+        if self._glance:
+            found = MeanSky(node)
+            found.drawn = True  # it is when it comes to it, for all that can be told before
+            return found
+        return drawn_sky(node, WIDTH, HEIGHT, self._store)
 
     def _texel(self, image: Any, u: float, v: float) -> Any | None:
         """The linear color of the pixel there; None when the image cannot be read."""
