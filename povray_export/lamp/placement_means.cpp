@@ -10,7 +10,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kMeansVersion = 16;
+constexpr uint32_t kMeansVersion = 17;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;
@@ -59,6 +59,7 @@ void PlacementMeans::find(FindingsFile& kept) {
         hasher.value(kMeansVersion).value(all_.scene()).value(key.first);
         hasher.value(wanted.places.size()).value(rays());
         hasher.value(wanted.representation->summary.max_error);
+        hasher.value(uneven_ != nullptr ? uneven_->hash() : 0);
         for (const Affine& world : wanted.places)
             hash_transform(hasher, world);
         wanted.key = hasher.result();
@@ -108,6 +109,7 @@ light::PlacedMeans PlacementMeans::baked(const MeansOfPlacements& wanted,
         light::SkyRequest request{surface, wanted.places[i], &around,
                                   wanted.representation->summary.max_error, rays()};
         request.horizon = out.horizon;
+        request.uneven = uneven_;
         out.means[i] = mean_sky_shares(request, rays());
         progress.add(static_cast<uint64_t>(rays()));
     });

@@ -26,8 +26,9 @@ struct MeansOfPlacements {
 /// rest is baked, then all is graded.
 class PlacementMeans {
 public:
-    /// The things must outlive it.
-    explicit PlacementMeans(const SkyThings& all) : all_(all) {}
+    /// The things, and the sky (null: the same everywhere), must outlive it.
+    PlacementMeans(const SkyThings& all, const light::UnevenSky* uneven)
+        : all_(all), uneven_(uneven) {}
 
     /// Wants those of a thing; returns them, which stay where they are, and its number among them.
     /// They are those of all placements of the finest level, so that grades do not depend on which
@@ -56,6 +57,7 @@ private:
                              const Job& job) const;
 
     const SkyThings& all_;
+    const light::UnevenSky* uneven_;
     std::vector<uint32_t> numbers_;                              // by leaf
     std::map<std::pair<Hash, bool>, MeansOfPlacements> wanted_;  // with: a stand-in
     std::vector<MeansOfPlacements*> missing_;

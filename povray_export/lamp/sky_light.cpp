@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/lamp/sky_light.h"
 
+#include "base/color.h"
 #include "base/maths.h"
 
 #include <glm/common.hpp>
@@ -29,8 +30,9 @@ glm::dvec3 stepped_slope(const glm::dvec3& slope, double size) {
 }
 
 SkyLightPtr sky_light(Hash shares_hash, std::shared_ptr<const light::SkyShares> shares,
-                      const PlacementShade& around, const Box3& box) {
+                      const PlacementShade& around, const Box3& box, const glm::dvec3& color) {
     auto out = std::make_shared<SkyLight>();
+    out->color = color;
     out->factor = stepped_factor(around.middle);
     out->slope = stepped_slope(around.slope, glm::length(box.size()));
     if (out->slope != glm::dvec3(0.0))
@@ -62,6 +64,20 @@ double share_of_grade(uint8_t grade) {
 
 uint8_t grade_of_share(double share) {
     return static_cast<uint8_t>(std::lround((kSkyGrades - 1) * std::sqrt(limited(share, 0, 1))));
+}
+
+glm::dvec3 factors_of_tint(const SkyTint& tint, const glm::dvec3& color) {
+    const glm::dvec3 factors(std::exp2(tint.x), 1, std::exp2(tint.y));
+    const double tinted = luminance(color * factors);
+    return tinted > 0 ? factors * (luminance(color) / tinted) : glm::dvec3(1.0);
+}
+
+SkyTint SkyLight::tint(size_t triangle, int corner) const {
+    if (!shares || shares->tints.empty())
+        return SkyTint(0.0);
+    const size_t at = 2 * (3 * triangle + static_cast<size_t>(corner));
+    return {light::octaves_of_tint(shares->tints.at(at)),
+            light::octaves_of_tint(shares->tints.at(at + 1))};
 }
 
 double SkyLight::share(size_t triangle, int corner, const glm::vec3& at) const {

@@ -18,16 +18,27 @@ inline constexpr int kSkyGrades = 32;
 double share_of_grade(uint8_t grade);
 uint8_t grade_of_share(double share);
 
+/// The hue of the sky's light, in octaves of red and blue beside green, in parts of its color.
+using SkyTint = glm::dvec2;
+/// The steps of a tint's octave for which textures are written.
+/// Taste: 9 % each, of colors that are blended between corners; more are more textures.
+inline constexpr double kTintGrades = 8;
+/// The factors of a tint on the parts of a light of `color`, whose luminance they leave.
+glm::dvec3 factors_of_tint(const SkyTint& tint, const glm::dvec3& color);
+
 /// The share of the sky's light that one drawn thing answers to.
 struct SkyLight {
     std::shared_ptr<const light::SkyShares> shares;  // null: `factor` alone
     double factor = 1;                               // on all shares: what is around the thing
     glm::dvec3 slope{0.0};   // of the factor, by metre of the thing's own frame
     glm::dvec3 middle{0.0};  // own frame: where the factor is that
+    glm::dvec3 color{1.0};   // of the sky, beside which tints are; of any brightness
     Hash hash = 0;           // of all of it
 
     /// The share of a corner of the split mesh, which lies there (own frame).
     double share(size_t triangle, int corner, const glm::vec3& at) const;
+    /// The hue of the light there; 0 of the sky's own.
+    SkyTint tint(size_t triangle, int corner) const;
 };
 using SkyLightPtr = std::shared_ptr<const SkyLight>;
 
@@ -36,9 +47,9 @@ double stepped_factor(double factor);
 /// The same of a slope, by metre of a thing that is so large.
 glm::dvec3 stepped_slope(const glm::dvec3& slope, double size);
 /// The light on a thing by its shares, which a hash stands for, times what is around it; `box`: of
-/// its finest level, own frame.
+/// its finest level, own frame; `color`: of the sky, which the hash stands for, too.
 SkyLightPtr sky_light(Hash shares_hash, std::shared_ptr<const light::SkyShares> shares,
-                      const PlacementShade& around, const Box3& box);
+                      const PlacementShade& around, const Box3& box, const glm::dvec3& color);
 /// The same light on all of a thing.
 SkyLightPtr even_sky_light(double factor);
 

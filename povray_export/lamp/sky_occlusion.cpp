@@ -19,7 +19,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 17;
+constexpr uint32_t kBakeVersion = 18;
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
@@ -37,7 +37,7 @@ public:
           job_(job),
           bakes_(options.file, kSkyVersion),
           all_(model, cut, options.most_triangles, job),
-          placements_(all_),
+          placements_(all_, options.uneven.get()),
           surfaces_(model,
                     options.texels ? options.texels : std::make_shared<image::TexelCache>()) {}
 
@@ -84,7 +84,7 @@ private:
         const Representation* representation = nullptr;
         const SkyThing* placed = nullptr;          // null: alone
         const Representation* original = nullptr;  // the finest level; null: it is that
-        const MeansOfPlacements* means = nullptr;  // null: it stands once, or moves
+        const MeansOfPlacements* means = nullptr;  // null: it stands once
         Hash key = 0;                              // where it is kept
         /// By triangle, 1: any of the things shows it. Empty: all count as shown.
         std::vector<uint8_t> seen;
@@ -99,6 +99,7 @@ private:
         const RepresentationSummary& summary = thing.representation->summary;
         const SkyThing* placed = once ? &thing : nullptr;
         hasher.value(kBakeVersion).value(options_.rays);
+        hasher.value(options_.uneven ? options_.uneven->hash() : 0);
         hasher.value(summary.hash).value(all_.finest_of(thing).summary.hash);
         hasher.value(summary.cost.triangles).value(thing.moves);
         if (placed != nullptr) {
@@ -121,7 +122,7 @@ private:
                 shares_of_[i] = want_shares(thing, once);
             if (shares_of_[i] != nullptr)
                 note_seen(i, *shares_of_[i]);
-            if (!once && !thing.moves)
+            if (!once)
                 means_of_[i] = placements_.want(thing);
             if (shares_of_[i] != nullptr)
                 shares_of_[i]->means = means_of_[i].first;
@@ -196,6 +197,7 @@ private:
         wanted.key = Hasher()
                          .value(key)
                          .value(horizon.below)
+                         .value(horizon.upright)
                          .value(horizon.up.x)
                          .value(horizon.up.y)
                          .value(horizon.up.z)
@@ -295,6 +297,7 @@ private:
         request.seen = wanted.seen;
         request.known = wanted.found.get();
         request.horizon = horizon_of(wanted);
+        request.uneven = options_.uneven.get();
         if (wanted.placed != nullptr) {
             request.world = wanted.placed->world;
             request.around = &*around_;
@@ -324,8 +327,11 @@ private:
         bakes_.save();
     }
 
+    static PlacementShade even_shade(double share) { return {share, share, {}}; }
+
     void light_all() {
         placements_.grade();
+        const glm::dvec3 color = options_.uneven ? options_.uneven->color() : glm::dvec3(1.0);
         lights_.resize(all_.things().size());
         means_.resize(all_.things().size(), 1);
         for (size_t i = 0; i < all_.things().size(); ++i) {
@@ -341,9 +347,15 @@ private:
             if (means == nullptr)
                 means_[i] = shares->mean;
             const Hash key = shares_of_[i]->key;
-            lights_[i] = means == nullptr ? sky_light(key, shares, {}, {})
-                                          : sky_light(key, shares, means->shades[number],
-                                                      means->representation->summary.bound.box);
+            if (means == nullptr) {
+                lights_[i] = sky_light(key, shares, {}, {}, color);
+                continue;
+            }
+            PlacementShade around = means->shades[number];
+            if (all_.things()[i].moves)  // in steps, so that most frames have the same file
+                around = even_shade(share_of_grade(grade_of_share(around.middle)));
+            lights_[i] =
+                sky_light(key, shares, around, means->representation->summary.bound.box, color);
         }
         grade_means();
     }
@@ -360,7 +372,7 @@ private:
             std::vector<PlacementShade> means;
             means.reserve(numbers.size());
             for (const size_t i : numbers)
-                means.push_back({means_[i], means_[i], {}});
+                means.push_back(even_shade(means_[i]));
             means = graded(means);
             for (size_t i = 0; i < numbers.size(); ++i)
                 means_[numbers[i]] = means[i].share;
@@ -404,6 +416,7 @@ SkyOcclusion::SkyOcclusion(const Model& model, const choose::Cut& cut,
         problems.push_back({"", Severity::Info, "sky_not_occluded", reason});
         return;
     }
+    found_ = true;
     lights_ = planner.lights();
     for (size_t i = 0; i < cut.chosen.size(); ++i) {
         if (lights_[i])

@@ -28,6 +28,8 @@ struct SkyOcclusionOptions {
     /// Taste: a larger value shades larger scenes, for minutes and gigabytes.
     uint64_t most_triangles = 6'000'000;
     std::filesystem::path file;  // where bakes are kept; "": nowhere
+    /// The sky by direction. Null: it is the same everywhere.
+    std::shared_ptr<const light::UnevenSky> uneven{};
     /// The masks of the model as far as they are decoded; null: none are.
     std::shared_ptr<image::TexelCache> texels{};
     /// The needs of the picture: the sky's light is not found on things that it does not show.
@@ -44,7 +46,8 @@ struct SkyOcclusionOptions {
 /// has those of its own shape, times one of at most four grades of what is around its placement,
 /// which changes evenly over the thing.
 /// Levels have the light of the outermost places near them of their finest level, and what stands in for a group
-/// that of all below it. What moves in an animation hides the sky from itself alone.
+/// that of all below it. What moves in an animation hides the sky from itself alone; what is around
+/// it, where it is now, hides the sky from it.
 class SkyOcclusion {
 public:
     /// Where rays cannot be cast or there is too much, nothing is occluded, and a problem says so.
@@ -54,6 +57,8 @@ public:
 
     /// The light on a choice of the cut; null: all of it.
     SkyLightPtr of(size_t position) const { return lights_[position]; }
+    /// False: the light is not found, and all of it is on everything.
+    bool found() const { return found_; }
     /// Whether rays were cast, so that time has passed.
     bool baked() const { return baked_; }
     /// The same for another level of that node: one factor for all of it.
@@ -61,6 +66,7 @@ public:
 
 private:
     bool baked_ = false;
+    bool found_ = false;
     std::vector<SkyLightPtr> lights_;                      // by position in cut.chosen
     std::vector<std::pair<uint32_t, SkyLightPtr>> means_;  // by node, rising
 };

@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 #include "base/maths.h"
-#include "light/environment_lights.h"
+#include "light/environment/environment_lights.h"
 #include "povray_export/scene/povray_number.h"
 
 #include <algorithm>
@@ -70,12 +70,15 @@ WrittenSky write_sky(const World& world, const SkySampling& sampling,
     constexpr size_t kFewest = 12;
     light::EnvironmentLights found;
     try {
-        found = light::environment_lights(world, sampling.lights > 0 ? sampling.lights : kFewest);
+        const size_t count = sampling.lights > 0 ? sampling.lights : kFewest;
+        found = sampling.found_by_rays ? light::environment_peaks(world, count)
+                                       : light::environment_lights(world, count);
     } catch (const Error& error) {
         problems.push_back({picture.name, Severity::Error, "environment_unreadable", error.what()});
         return sky;
     }
     sky.ambient = found.ambient;
+    sky.uneven = found.uneven;
     double largest = largest_of(sky.ambient);
     for (const light::EnvironmentLight& each : found.lights)
         largest = std::max(largest, largest_of(each.irradiance));
@@ -87,6 +90,7 @@ WrittenSky write_sky(const World& world, const SkySampling& sampling,
         Light& sun = sky.lights.emplace_back();
         sun.direction = each.direction;
         sun.color = each.irradiance;
+        sun.angle = each.angle;
         sun.shadow = sampling.shadows;
     }
     sky.file = "i/" + hex16(picture.hash) + '.' + suffix_of(picture.format);

@@ -2,9 +2,11 @@
 // Sky writer: a world as the picture behind everything and as the light it gives.
 #pragma once
 
+#include "light/environment/uneven_sky.h"
 #include "model/view.h"
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,11 +17,15 @@ struct SkySampling {
     /// The most lights: more give finer shadows of the sky, for a ray each at every seen point.
     size_t lights = 24;
     bool shadows = true;  // false: the lights shine through everything
+    /// True: rays find what each place sees of the sky, so that only its peaks become lights.
+    bool found_by_rays = false;
 };
 
 /// A world as it is written.
 struct WrittenSky {
-    glm::dvec3 ambient{0.0};    // radiance that lights everything alike, without shadows
+    glm::dvec3 ambient{0.0};  // radiance that lights everything alike, without shadows
+    /// The sky by direction, in parts of it. Null: it is the same everywhere.
+    std::shared_ptr<const light::UnevenSky> uneven{};
     std::vector<Light> lights;  // suns for an environment's light besides
     std::string pigment;        // pigment{...} of an environment's picture; "" without
     glm::dvec3 strength{1.0};   // factor on what the picture shows

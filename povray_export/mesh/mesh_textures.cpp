@@ -59,8 +59,13 @@ Key rounded(Key key, uint64_t step) {
 
 /// Another key for each grade of the sky's light: equal ones of different colors, which are as
 /// likely as a collision of hashes, only count as one.
-Key graded(Key key, uint8_t grade) {
+Key graded(Key key, uint32_t grade) {
     return key ^ (0x9e3779b97f4a7c15u * (uint64_t{grade} + 1));
+}
+
+/// A number for each tint; 0 for none.
+uint32_t number_of_tint(int8_t red, int8_t blue) {
+    return static_cast<uint32_t>(static_cast<uint8_t>(red)) << 8u | static_cast<uint8_t>(blue);
 }
 
 glm::dvec4 color_of_key(Key key) {
@@ -305,30 +310,43 @@ bool MeshTextures::plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane)
     return true;
 }
 
-uint8_t MeshTextures::sky_grade(size_t triangle, int corner) const {
+MeshTextures::SkyGrade MeshTextures::sky_grade(size_t triangle, int corner) const {
     if (!sky_ || !sky_->shares)
-        return kSkyGrades - 1;
+        return {};
     const size_t source = cut_.any ? cut_.sources[triangle] : triangle;
     const Triangle& corners = mesh_.triangles[source];
     std::array<double, 3> shares{};
+    std::array<SkyTint, 3> tints{};
     std::array<glm::dvec3, 3> at{};
     for (int i = 0; i < 3; ++i) {
         const glm::vec3& position = mesh_.positions[corners[i]];
         at[static_cast<size_t>(i)] = glm::dvec3(position);
         shares[static_cast<size_t>(i)] = sky_->share(source, i, position);
+        tints[static_cast<size_t>(i)] = sky_->tint(source, i);
     }
+    const auto grade = [&](const glm::dvec3& weights) {
+        const SkyTint tint = weights.x * tints[0] + weights.y * tints[1] + weights.z * tints[2];
+        const auto step = [](double octaves) {
+            return static_cast<int8_t>(std::lround(kTintGrades * octaves));
+        };
+        return SkyGrade{
+            grade_of_share(weights.x * shares[0] + weights.y * shares[1] + weights.z * shares[2]),
+            step(tint.x), step(tint.y)};
+    };
     const bool even = slots_[slot_at_[mesh_.slot(source)]].even_sky;
     const Triangle& shown = shown_.triangles[triangle];
-    if (shown == corners)
-        return grade_of_share(even ? (shares[0] + shares[1] + shares[2]) / 3
-                                   : shares[static_cast<size_t>(corner)]);
+    if (shown == corners) {
+        glm::dvec3 one(0.0);
+        one[corner] = 1;
+        return grade(even ? glm::dvec3(1.0 / 3) : one);
+    }
     glm::dvec3 place(shown_.positions[shown[corner]]);
     if (even) {
         const auto position = [&](int i) { return glm::dvec3(shown_.positions[shown[i]]); };
         place = (position(0) + position(1) + position(2)) / 3.0;
     }
     const geometry::OnTriangle on = geometry::closest_on_triangle(place, at[0], at[1], at[2]);
-    return grade_of_share((1 - on.u - on.v) * shares[0] + on.u * shares[1] + on.v * shares[2]);
+    return grade({1 - on.u - on.v, on.u, on.v});
 }
 
 /// The number of different colors, with their grades of the sky's light, once colors are rounded;
@@ -344,9 +362,11 @@ size_t MeshTextures::distinct_looks(const std::vector<Key>& keys, uint64_t step)
     }
     for (size_t i = 0; i < shown_.triangles.size() && distinct.size() <= kMost; ++i) {
         check_job_sometimes(i);
-        for (int corner = 0; corner < 3; ++corner)
-            distinct.insert(
-                graded(rounded(keys[shown_.triangles[i][corner]], step), sky_grade(i, corner)));
+        for (int corner = 0; corner < 3; ++corner) {
+            const SkyGrade grade = sky_grade(i, corner);
+            distinct.insert(graded(rounded(keys[shown_.triangles[i][corner]], step),
+                                   number_of_tint(grade.red, grade.blue) << 8u | grade.share));
+        }
     }
     return distinct.size();
 }
@@ -398,14 +418,18 @@ void MeshTextures::find_corners(PictureWriter& pictures) {
     const size_t planes = kMostPlanes + 1;
     std::vector<std::unordered_map<Key, uint32_t>> texts(slots_.size() * planes *
                                                          (lit ? kSkyGrades : 1));
-    const auto text_of = [&](size_t at, size_t plane, Key key, uint8_t grade) {
-        const size_t place = (lit ? grade * slots_.size() + at : at) * planes + plane;
-        const auto [found, fresh] = texts[place].try_emplace(key, 0);
+    const auto text_of = [&](size_t at, size_t plane, Key key, const SkyGrade& grade) {
+        const size_t place = (lit ? grade.share * slots_.size() + at : at) * planes + plane;
+        const uint32_t tint = number_of_tint(grade.red, grade.blue);
+        const auto [found, fresh] = texts[place].try_emplace(tint > 0 ? graded(key, tint) : key, 0);
         if (!fresh)
             return found->second;
         TexturedSlot slot = slots_[at];
-        if (lit)
-            slot.surface.sky = share_of_grade(grade);
+        if (lit) {
+            slot.surface.sky = share_of_grade(grade.share);
+            slot.surface.sky_hue =
+                factors_of_tint(SkyTint(grade.red, grade.blue) / kTintGrades, sky_->color);
+        }
         if (plane < slot.planes.size()) {
             slot.surface.flat = true;
             slot.surface.to_uv = slot.planes[plane];

@@ -75,7 +75,13 @@ private:
     bool plane_of(size_t triangle, TexturedSlot& slot, uint8_t& plane) const;
     std::vector<uint64_t> color_keys(glm::dvec3& hue) const;
     size_t distinct_looks(const std::vector<uint64_t>& keys, uint64_t step) const;
-    uint8_t sky_grade(size_t triangle, int corner) const;
+    /// The sky's light on a corner, in the steps for which textures are written.
+    struct SkyGrade {
+        uint8_t share = kSkyGrades - 1;
+        int8_t red = 0;   // of the tint
+        int8_t blue = 0;  // of the tint
+    };
+    SkyGrade sky_grade(size_t triangle, int corner) const;
     void find_corners(PictureWriter& pictures);
     size_t add(const TexturedSlot& slot, PictureWriter& pictures);
     void check_job_sometimes(size_t i) const;

@@ -10,7 +10,7 @@
 #include "povray_export/lamp/light_writer.h"
 #include "povray_export/lamp/renderer_surfaces.h"
 #include "povray_export/lamp/scene_lights.h"
-#include "povray_export/lamp/sky_occlusion.h"
+#include "povray_export/lamp/scene_sky.h"
 #include "povray_export/mesh/pixel_field.h"
 #include "povray_export/occurrence/clear_surfaces.h"
 #include "povray_export/occurrence/lit_uses.h"
@@ -74,22 +74,20 @@ public:
                  cut_.chosen.size(), " chosen occurrences");
         make_folder(options_.folder / "r");
         if (!options_.covered_only)
-            sky_ = write_sky(model_.world,
-                             {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1},
-                             options_.folder, problems_);
+            sky_.emplace(model_, shading_, lit(), options_.folder, problems_);
         find_needs();
         find_sky_light();
         collect();
         plan_ = light_plan();
         add_files();
-        includes_.write(job_.part(sky_light_ && sky_light_->baked() ? kBakePart : 0, 1));
+        includes_.write(job_.part(sky_ && sky_->baked() ? kBakePart : 0, 1));
         hide_replaced();
         name_problems();
-        if (!sky_.file.empty()) {
-            report_.bytes += sky_.bytes;
-            report_.texels += sky_.texels;
+        if (!sky().file.empty()) {
+            report_.bytes += sky().bytes;
+            report_.texels += sky().texels;
             ++report_.files;
-            report_.written += sky_.written ? 1u : 0u;
+            report_.written += sky().written ? 1u : 0u;
         }
         const std::string text = scene();
         write_text("scene.pov", text);
@@ -120,28 +118,26 @@ private:
     void find_needs() {
         if (!lit() || shading_.bounces > 0)
             return;
-        std::vector<Light> lights = sky_.lights;
+        std::vector<Light> lights = sky().lights;
         lights.insert(lights.end(), model_.lights.begin(), model_.lights.end());
         needs_.find(model_, renderer_, cut_, view_, lights, job_);
         report_.left_out_bytes = needs_.bytes_left_out();
         report_.covered = needs_.covered();
     }
 
-    /// Gathered light shadows the sky by itself; POV-Ray ignores ambient then.
     void find_sky_light() {
-        if (!lit() || shading_.bounces > 0 || shading_.sky_rays <= 0 ||
-            sky_.ambient == glm::dvec3(0.0))
+        if (options_.covered_only)
             return;
         // Taste: a name that says what it is to who finds it.
         constexpr const char* kFile = "sky_light.bin";
         SkyOcclusionOptions wanted;
-        wanted.rays = shading_.sky_rays;
         wanted.file = (options_.bakes.empty() ? options_.folder : options_.bakes) / kFile;
         wanted.load_finest = options_.load_finest;
         wanted.needs = &needs_;
         wanted.pixels = static_cast<double>(view_.width) * view_.height;
         wanted.texels = renderer_.texels;
-        sky_light_.emplace(model_, cut_, wanted, problems_, job_.part(0, kBakePart));
+        if (!sky_->find_light(cut_, wanted, job_.part(0, kBakePart)))
+            find_needs();
     }
 
     void collect_own() {
@@ -149,7 +145,7 @@ private:
             shading_.area_samples > 1 && shading_.shadow_error <= view_.pixel_error;
         for (const OwnUse& own : own_uses(model_, cut_, rays(), softened))
             add_use({own.node, own.lod, kNoPosition, 0, own.world, own.hidden, own.in_place},
-                    own.textures, sky_light_ ? sky_light_->mean_of_node(own.node) : nullptr);
+                    own.textures, sky_ ? sky_->mean_of_node(own.node) : nullptr);
     }
 
     /// Hides representations from classes that meet something else in their place, which must be
@@ -259,7 +255,7 @@ private:
                 continue;
             }
             add_use({index, node.lod, position, 0, cut_.world(node), node.hidden},
-                    !options_.false_color, sky_light_ ? sky_light_->of(position) : nullptr);
+                    !options_.false_color, sky_ ? sky_->of(position) : nullptr);
             // Gathering rays would otherwise look through a lamp, at what it lights behind itself.
             const std::optional<glm::dvec3> dull =
                 shading_.bounces > 0 ? without_glow(model_, representation, node.hidden)
@@ -328,6 +324,10 @@ private:
         ++report_.written;
     }
 
+    const WrittenSky& sky() const {
+        static const WrittenSky none;
+        return sky_ ? sky_->written() : none;
+    }
     bool transparent() const { return options_.covered_only || model_.world.transparent; }
     static bool lit(const ExportOptions& options) {
         return !options.covered_only && !options.false_color;
@@ -362,9 +362,9 @@ private:
         demands.bounces = shading_.bounces;
         // Where light is gathered, walls shadow a sky.
         if (shading_.bounces == 0)
-            demands.sky = sky_.ambient;
+            demands.sky = sky().ambient;
         demands.sky_shaded = shading_.sky_rays > 0;
-        std::vector<Light> suns = sky_.lights;
+        std::vector<Light> suns = sky().lights;
         suns.insert(suns.end(), model_.lights.begin(), model_.lights.end());
         demands.suns = suns;
         demands.measured_suns = options_.antialiasing != Antialiasing::Reference;
@@ -431,7 +431,7 @@ private:
         std::string lights;
         if (lit()) {
             report_.lamp_rays = light::mean_lamp_rays(plan_, model_.lights);
-            report_.sky_lights = sky_.lights.size();
+            report_.sky_lights = sky().lights.size();
             report_.shadow_rays = static_cast<double>(report_.sky_lights) + report_.lamp_rays +
                                   light::mean_sun_rays(plan_, model_.lights);
         }
@@ -442,7 +442,7 @@ private:
         const Camera camera = magnified(view_.camera, times);
         const SceneHead head{view_.pixel_error,    report_.occurrences, times,
                              includes_.refracts(), transparent(),       camera.position};
-        std::string out = head_text(head, shading_, sky_);
+        std::string out = head_text(head, shading_, sky());
         append_camera(out, camera, options_.antialiasing, problems_);
         if (lit()) {
             for (uint32_t i = 0; i < model_.lights.size(); ++i) {
@@ -456,10 +456,10 @@ private:
                 append_number(out, plan_.lights_each, 3);
                 out += " lights on average, some of which stand for several\n" + lights;
             }
-            if (!sky_.lights.empty())
+            if (!sky().lights.empty())
                 out += "// The rest of the environment's light\n";
-            for (const Light& light : sky_.lights)
-                append_light(out, light, bound, light_sampling(), problems_);
+            for (const Light& light : sky().lights)
+                scene_lights.append(out, light, 0);
         }
         out += layers_text();
         out += '\n';
@@ -485,8 +485,7 @@ private:
     std::vector<Bound> bounds_;   // by use, world frame
     light::LightPlan plan_;
     ExportReport report_;
-    WrittenSky sky_;
-    std::optional<SkyOcclusion> sky_light_;
+    std::optional<SceneSky> sky_;
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ struct Shading {
     int depth = 0;            // Final: its square is how many
     int trace_depth = 0;      // mirrors or bodies of glass, one behind the other
     int area_samples = 0;     // rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows
-    int sky_lights = 0;       // lights that stand for an environment image; below 0: none
+    int sky_lights = 0;       // the most lights that stand for an environment image; below 0: none
     int sky_rays = 0;         // rays by which corners find their share of the sky; below 0: none
     double shadow_error = 0;  // pixels; narrower penumbrae are sharp. 0: the Pixel Error
     double reflection_error = 0;  // 255ths; rays that add less are not followed. 0: 1

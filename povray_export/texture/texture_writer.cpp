@@ -313,12 +313,12 @@ private:
             below.specular = 0;
         out.finish = finish_of(below);
         const double sky = share(surface_.sky, 1);
-        out.finish.ambient *= brightness * sky;
+        out.finish.ambient *= brightness * sky * surface_.sky_hue;
         out.finish.diffuse *= brightness;
         out.finish.specular *= std::lerp(1.0, brightness, out.finish.metallic);
         // The part that has not the color of the pigment, and is the same all over.
         if (!out.gloss)
-            out.white = glm::dvec3(white_sky(look) * sky);
+            out.white = white_sky(look) * sky * surface_.sky_hue;
         out.even = out.lamp ? glm::dvec3(0.0) : emission;
         out.plain =
             out.gloss || (image && (out.white != glm::dvec3(0.0) || out.even != glm::dvec3(0.0)));

@@ -16,12 +16,13 @@ namespace lodestone::povray {
 struct TexturedSurface {
     bool uvs = false;  // without texture coordinates every texture is its mean
     UvRange range;
-    PicturePtr mask;        // the picture whose alpha says where it is, or where it was cut out
-    glm::dvec4 color{1.0};  // color of its vertices, linear; counts where the material uses it
-    double sky = 1;         // share of a uniform sky's light that reaches it
-    bool layered = true;    // false: gloss is not a layer, but in the color of what is no picture
-    bool flat = false;      // true: in one plane with to_uv; only there bumps are shown
-    Affine to_uv;           // position to (u, v, height above the plane), where flat
+    PicturePtr mask;          // the picture whose alpha says where it is, or where it was cut out
+    glm::dvec4 color{1.0};    // color of its vertices, linear; counts where the material uses it
+    double sky = 1;           // share of a uniform sky's light that reaches it
+    glm::dvec3 sky_hue{1.0};  // factors on that light
+    bool layered = true;      // false: gloss is not a layer, but in the color of what is no picture
+    bool flat = false;        // true: in one plane with to_uv; only there bumps are shown
+    Affine to_uv;             // position to (u, v, height above the plane), where flat
 };
 
 /// The text texture{...}. Shares (alpha, mixtures, maps of roughness and metallic) are weighted

@@ -52,6 +52,13 @@ TEST(PovraySky, ABrightSideHasLightsAndNoneThatNoPictureCouldTell) {
         EXPECT_GE(light.color.x, 2e-3 * brightest);
 }
 
+TEST(PovraySky, WhereRaysFindItOnlyPeaksAreLights) {
+    const WrittenSky sky = written(world_of(0.25f, 0.75f), {24, true, true});
+    EXPECT_TRUE(sky.lights.empty());
+    ASSERT_TRUE(sky.uneven);
+    EXPECT_EQ(sky.ambient, sky.uneven->color());
+}
+
 TEST(PovraySky, WithoutLightsAllOfItsLightIsUniform) {
     const World world = world_of(0.25f, 0.75f);
     const WrittenSky with = written(world);

@@ -1129,8 +1129,9 @@ typedef struct lds_povray_options {
     int32_t trace_depth;        /* most mirrors and glass bodies one behind the other; usual 5 */
     int32_t area_samples; /* shadow rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows;
                              usual 17, with OFF 1 */
-    int32_t sky_lights;   /* lights that stand for an environment image; below 0: none; usual 24,
-                             with OFF 12, with REFERENCE 64 */
+    int32_t sky_lights;   /* the most lights that stand for the peaks of an environment image, or,
+                             without sky_rays or with bounces, for all of it; below 0: none; usual
+                             24, with OFF 12, with REFERENCE 64 */
     double shadow_error;  /* pixels: a penumbra narrower than this is drawn sharp; usual the view's
                              pixel_error */
     double light_error; /* replaces the view's Pixel Error where lamps are left out, or joined into

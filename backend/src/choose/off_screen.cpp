@@ -24,7 +24,7 @@ constexpr double kDielectric = 0.085;
 // Law: Disney's principled model gives a clear coat a quarter of it.
 constexpr double kCoat = 0.25;
 // How many suns a picture of the sky becomes at least; each has this part of its light.
-// Law: drafts light with 12 suns, others with more (light/environment_lights).
+// Law: drafts light with 12 suns, others with more (light/environment/environment_lights).
 constexpr double kSkySuns = 12;
 // The pixels from which on a mirror counts fully. The image in a smaller one, such as a door knob,
 // is small and so strongly bent that nothing in it is as large as in a flat mirror.

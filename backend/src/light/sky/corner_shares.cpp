@@ -32,19 +32,25 @@ size_t CornerShares::CornerKeyHash::operator()(const CornerKey& key) const {
     return static_cast<size_t>(out);
 }
 
-double CornerShares::GroupShares::share() const {
+double CornerShares::GroupShares::share(const UnevenSky* sky) const {
     if (!(rays > 0))
         return all_rays > 0 ? all_seen / all_rays : 0;
+    // Few rays may have met more or less of an uneven sky than all would.
+    double chance = 1;
+    if (sky != nullptr && sky->share_of(uneven.open) > 0)
+        chance = sky->share_of(uneven.expected) / sky->share_of(uneven.open);
     const double side = rays / 2;
-    return (opaque ? 1 : of_side_that_is_seen((seen - back) / side, back / side, count / 2)) *
+    return chance *
+           (opaque ? 1 : of_side_that_is_seen((seen - back) / side, back / side, count / 2)) *
            seen / rays;
 }
 
 CornerShares::CornerShares(const Mesh& mesh, std::span<const uint32_t> welded,
-                           const SkySurface& surface)
+                           const SkySurface& surface, const UnevenSky* sky)
     : mesh_(mesh),
       welded_(welded),
       surface_(surface),
+      sky_(sky),
       group_of_(3 * mesh.triangles.size()),
       areas_(mesh.triangles.size(), 0) {
     known_.reserve(mesh.triangles.size());
@@ -86,6 +92,7 @@ void CornerShares::add(size_t triangle, const TriangleShares& shares, double are
             group.rays += weight * shares.rays[at];
             group.back += weight * shares.back[at];
             group.count += shares.rays[at];
+            group.uneven.add(shares.uneven[at], weight);
         }
     }
 }
@@ -93,7 +100,7 @@ void CornerShares::add(size_t triangle, const TriangleShares& shares, double are
 double CornerShares::mean_of_corners(size_t triangle) const {
     double out = 0;
     for (size_t corner = 0; corner < 3; ++corner)
-        out += groups_[group_of_[3 * triangle + corner]].share() / 3;
+        out += groups_[group_of_[3 * triangle + corner]].share(sky_) / 3;
     return out;
 }
 
@@ -140,8 +147,13 @@ void CornerShares::finish(std::span<const TriangleShares> shares, SkyShares& out
     out.corners.reserve(group_of_.size());
     for (const uint32_t index : group_of_) {
         const GroupShares& group = groups_[index];
-        const double share = group.rays > 0 || group.all_rays > 0 ? group.share() : out.mean;
+        const double share = group.rays > 0 || group.all_rays > 0 ? group.share(sky_) : out.mean;
         out.corners.push_back(share_byte(group.opaque ? share : std::min(1.0, lighter * share)));
+        if (sky_ != nullptr && !sky_->one_hue()) {
+            const glm::dvec3 color = group.uneven.likely();
+            out.tints.push_back(tint_byte(color.x / color.y));
+            out.tints.push_back(tint_byte(color.z / color.y));
+        }
     }
 }
 

@@ -16,8 +16,10 @@ namespace lodestone::light {
 /// often as it sees the sky itself, for whoever looks at a leaf looks from where it is open.
 class CornerShares {
 public:
-    /// `welded`: a number for each place, by vertex. All must outlive the object.
-    CornerShares(const Mesh& mesh, std::span<const uint32_t> welded, const SkySurface& surface);
+    /// `welded`: a number for each place, by vertex; `sky`: null where it is the same everywhere.
+    /// All must outlive the object.
+    CornerShares(const Mesh& mesh, std::span<const uint32_t> welded, const SkySurface& surface,
+                 const UnevenSky* sky);
 
     /// Adds a triangle's shares; all triangles are added in turn. `area`: placed, of any unit.
     void add(size_t triangle, const TriangleShares& shares, double area);
@@ -42,10 +44,11 @@ private:
         double count = 0;     // of rays
         double all_seen = 0;  // those inside of something too
         double all_rays = 0;
+        UnevenLight uneven;
         bool opaque = true;
 
         /// The share of the side that is seen. See of_side_that_is_seen().
-        double share() const;
+        double share(const UnevenSky* sky) const;
     };
 
     CornerKey key_of(size_t triangle, int corner) const;
@@ -59,6 +62,7 @@ private:
     const Mesh& mesh_;
     std::span<const uint32_t> welded_;
     const SkySurface& surface_;
+    const UnevenSky* sky_;
     std::unordered_map<CornerKey, uint32_t, CornerKeyHash> known_;
     std::vector<GroupShares> groups_;
     std::vector<uint32_t> group_of_;  // by corner

@@ -86,7 +86,7 @@ SkyHorizon sky_horizon(const SkySurface& surface, std::span<const Affine> places
         }
     }
     const double below = passed > 0 ? std::round(kSteps * seen / passed) / kSteps : 1;
-    return below < 1 ? SkyHorizon{up, below} : SkyHorizon{};
+    return {up, below, true};
 }
 
 }  // namespace lodestone::light

@@ -15,6 +15,7 @@ namespace lodestone::light {
 struct SkyHorizon {
     glm::dvec3 up{0.0, 0.0, 1.0};  // unit, own frame: an axis of it
     double below = 1;              // the part of the sky below that is seen; 1: there is no ground
+    bool upright = false;          // all placements have this axis up
 
     /// Whether a direction (own frame, any length) points below it.
     bool down(const glm::dvec3& direction) const { return glm::dot(direction, up) < 0; }

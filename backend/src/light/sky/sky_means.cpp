@@ -123,21 +123,23 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         const double alone = light > 0 && !sampler.hidden_alone(ray) ? light : 0;
         // A placement sees all or nothing of the sky below, on the average as much.
         const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
-        all.placed += weight * seen;
-        all.alone += weight * alone;
+        const double placed_light = seen > 0 ? weight * seen * sampler.brightness(ray, true) : 0;
+        const double alone_light = alone > 0 ? weight * alone * sampler.brightness(ray, false) : 0;
+        all.placed += placed_light;
+        all.alone += alone_light;
         all.rays += weight;
         if (both) {
             MeanSums& side = leaves.side[i % 2];
-            side.placed += weight * seen;
-            side.alone += weight * alone;
+            side.placed += placed_light;
+            side.alone += alone_light;
             side.rays += weight;
             ++leaves.count;
         }
         if (seen == 0 && !both && sampler.lies_inside(mesh, triangle, *placed)) {
-            inside.alone += weight * alone;
+            inside.alone += alone_light;
             inside.rays += weight;
         } else if (alone > 0) {
-            passed.add(place.at, weight * alone, seen / alone);
+            passed.add(place.at, alone_light, seen / alone);
         }
     }
     if (inside.rays < all.rays) {
@@ -158,7 +160,7 @@ std::string PlacedMeans::bytes() const {
         for (const float value : {static_cast<float>(numbers)...})
             out.append(reinterpret_cast<const char*>(&value), sizeof value);
     };
-    add(horizon.up.x, horizon.up.y, horizon.up.z, horizon.below);
+    add(horizon.up.x, horizon.up.y, horizon.up.z, horizon.below, horizon.upright);
     for (const SkyMeans& one : means)
         add(one.placed, one.alone, one.slope.x, one.slope.y, one.slope.z, one.middle.x,
             one.middle.y, one.middle.z);
@@ -167,12 +169,12 @@ std::string PlacedMeans::bytes() const {
 
 std::optional<PlacedMeans> PlacedMeans::of_bytes(std::string_view bytes, size_t count) {
     std::array<float, kNumbers> numbers{};
-    std::array<float, 4> horizon{};
+    std::array<float, 5> horizon{};
     if (bytes.size() != sizeof horizon + count * sizeof numbers)
         return {};
     std::memcpy(horizon.data(), bytes.data(), sizeof horizon);
-    const auto [x, y, z, below] = horizon;
-    PlacedMeans out{{{x, y, z}, below}, {}};
+    const auto [x, y, z, below, upright] = horizon;
+    PlacedMeans out{{{x, y, z}, below, upright > 0}, {}};
     if (!finite(out.horizon.up) || !(below >= 0 && below <= 1))
         return {};
     for (size_t i = 0; i < count; ++i) {

@@ -119,6 +119,24 @@ bool SkySampler::hidden_alone(const SkyRay& ray) const {
     return !flat_ && self().scene->occluded(ray.from, to_own_.linear * ray.direction);
 }
 
+glm::dvec3 SkySampler::color(const SkyRay& ray, bool placed) const {
+    if (request_.uneven == nullptr)
+        return glm::dvec3(1.0);
+    if (request_.horizon.upright) {
+        const glm::dvec3 own = to_own_.linear * ray.direction;
+        return request_.uneven->at_height(glm::dot(own, request_.horizon.up) / glm::length(own));
+    }
+    return placed ? request_.uneven->toward(ray.direction) : glm::dvec3(1.0);
+}
+
+glm::dvec3 SkySampler::expected(const SkyPlace& place, bool both, const glm::dvec3& open) const {
+    // Law: where the placements of copies face is not known.
+    if (request_.around == nullptr || request_.horizon.upright)
+        return open;
+    return request_.uneven->received(place.normal) +
+           request_.uneven->received(both ? -place.normal : place.normal);
+}
+
 TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) const {
     const std::optional<PlacedTriangle> placed = this->placed(mesh, triangle);
     if (!placed)
@@ -150,14 +168,27 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
                                both ? ray(place, true) : ray(place, false, true)};
         double seen = 0;
         double back = 0;
+        double passed = 0;
+        UnevenLight uneven;
         bool inside = false;
         for (const SkyRay& one : pair) {
-            const double own = this->seen(one, blocker);
+            const double part = this->passed(one, blocker);
+            double own = part;
+            if (request_.uneven != nullptr) {
+                const glm::dvec3 color = this->color(one, request_.around != nullptr);
+                own = part * request_.uneven->share_of(color);
+                uneven.seen += part * color;
+                uneven.open += light(one) * color;
+            }
+            passed += part;
             seen += own;
             back = both ? own : 0;  // of the second one
-            inside = inside || (!both && own == 0 && one.open && light(one) > 0 &&
+            inside = inside || (!both && part == 0 && one.open && light(one) > 0 &&
                                 meets_near_back(one, reach));
         }
+        if (request_.uneven != nullptr)
+            uneven.expected = expected(place, both, uneven.open);
+        out.passed += inside ? 0 : passed;
         if (both && rays >= kFewestAgain && number % kAgain == 0) {
             const SkyPlace other = again(place, uint64_t{triangle} << 32u | number);
             const double front_again = this->seen(ray(other, false), blocker);
@@ -173,10 +204,11 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
             if (!inside) {
                 out.seen[corner] += seen * weight;
                 out.back[corner] += back * weight;
+                out.uneven[corner].add(uneven, weight);
             }
         }
     }
-    const bool dark = !both && out.share() < kDark;
+    const bool dark = !both && out.open_share() < kDark;
     out.inside = dark && lies_inside(mesh, triangle, placed);
     if (dark && !out.inside && !closed_)
         add_back(mesh, triangle, placed, rays, out);
@@ -310,6 +342,7 @@ void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangl
                           TriangleShares& out) const {
     std::array<double, 3> seen{};
     std::array<double, 3> weights{};
+    std::array<UnevenLight, 3> uneven{};
     uint32_t blocker = ray::PlacedScenes::kNothing;
     uint32_t near = ray::kNoTriangle;
     for (int i = 0; i < rays; ++i) {
@@ -317,14 +350,19 @@ void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangl
             this->ray(place(mesh, triangle, placed, static_cast<uint32_t>(i), near), true);
         const bool above = request_.around != nullptr ? ray.direction.z > 0 : !down(ray);
         const bool free = ray.open && above && !hidden(ray, blocker);
+        const double sky = free ? brightness(ray, request_.around != nullptr) : 0;
         for (size_t corner = 0; corner < 3; ++corner) {
             weights[corner] += ray.weights[corner];
-            seen[corner] += free ? ray.weights[corner] : 0;
+            seen[corner] += ray.weights[corner] * sky;
+            if (free)
+                uneven[corner].seen += ray.weights[corner] * color(ray, request_.around != nullptr);
         }
     }
     for (size_t corner = 0; corner < 3; ++corner) {
         const double back = weights[corner] > 0 ? seen[corner] / weights[corner] : 0;
         out.seen[corner] = (out.seen[corner] + back * out.rays[corner]) / 2;
+        if (weights[corner] > 0)
+            out.uneven[corner].add(uneven[corner], out.rays[corner] / weights[corner]);
     }
 }
 

@@ -2,6 +2,7 @@
 // Sky sampler: the rays that tell how much of the sky the triangles of a placed surface see.
 #pragma once
 
+#include "light/environment/uneven_sky.h"
 #include "light/sky/sky_horizon.h"
 #include "light/sky/sky_scene.h"
 #include "light/sky/sky_shares.h"
@@ -36,6 +37,29 @@ struct SkyRequest {
     const SkyShares* known = nullptr;
     /// How much of the sky below counts, for the surface alone.
     SkyHorizon horizon = {};
+    /// The sky by direction; of a surface alone, whose placements may be turned, by height where all
+    /// of them are upright. Null: it is the same everywhere.
+    const UnevenSky* uneven = nullptr;
+};
+
+/// Sums over rays of the light of an uneven sky, in parts of its color.
+struct UnevenLight {
+    glm::dvec3 seen{0.0};
+    glm::dvec3 open{0.0};      // the same if nothing hid the sky
+    glm::dvec3 expected{0.0};  // and so many of them in all directions
+
+    void add(const UnevenLight& other, double weight) {
+        seen += weight * other.seen;
+        open += weight * other.open;
+        expected += weight * other.expected;
+    }
+    /// The same of all rays, as far as these can tell.
+    glm::dvec3 likely() const {
+        glm::dvec3 out = seen;
+        for (int i = 0; i < 3; ++i)
+            out[i] *= open[i] > 0 ? expected[i] / open[i] : 1;
+        return out;
+    }
 };
 
 /// The answers of the rays of one triangle.
@@ -45,6 +69,9 @@ struct TriangleShares {
     std::array<double, 3> rays{};  // the sum of these weights
     /// The weights of rays that begin inside of something opaque, which are not in the others.
     std::array<double, 3> inside_rays{};
+    /// By corner, of an uneven sky.
+    std::array<UnevenLight, 3> uneven{};
+    double passed = 0;    // what seen would be under a sky that is equally bright everywhere
     bool inside = false;  // true: all of it lies inside of something opaque
     /// The rays that were cast once more from the places of leaves, to the same sides: how many there
     /// are, what they saw, and the same times what the first ones saw.
@@ -55,6 +82,11 @@ struct TriangleShares {
     double share() const {
         const double sum = rays[0] + rays[1] + rays[2];
         return sum > 0 ? (seen[0] + seen[1] + seen[2]) / sum : 0;
+    }
+    /// The share of an equally bright sky.
+    double open_share() const {
+        const double sum = rays[0] + rays[1] + rays[2];
+        return sum > 0 ? passed / sum : 0;
     }
 };
 
@@ -118,6 +150,12 @@ public:
         return request_.horizon.down(to_own_.linear * ray.direction);
     }
     double light(const SkyRay& ray) const { return down(ray) ? request_.horizon.below : 1; }
+    /// The sky in the direction of a ray, for the surface as it is placed or alone, and its
+    /// luminance; 1 is the color of an uneven one.
+    glm::dvec3 color(const SkyRay& ray, bool placed) const;
+    double brightness(const SkyRay& ray, bool placed) const {
+        return request_.uneven == nullptr ? 1 : request_.uneven->share_of(color(ray, placed));
+    }
 
     /// Whether the sky is hidden on a ray: by anything, or by the surface itself.
     bool hidden(const SkyRay& ray, uint32_t& blocker) const;
@@ -127,11 +165,19 @@ public:
     bool lies_inside(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed) const;
 
 private:
-    /// The light of the sky on a ray, 0...1: none where anything hides it.
-    double seen(const SkyRay& ray, uint32_t& blocker) const {
+    /// The part of a sky's light on a ray that arrives, 0...1: none where anything hides it.
+    double passed(const SkyRay& ray, uint32_t& blocker) const {
         const double sky = ray.open ? light(ray) : 0;
         return sky > 0 && !hidden(ray, blocker) ? sky : 0;
     }
+    /// The light of the sky on a ray.
+    double seen(const SkyRay& ray, uint32_t& blocker) const {
+        const double part = passed(ray, blocker);
+        return part > 0 ? part * brightness(ray, request_.around != nullptr) : 0;
+    }
+    /// The sum of what two rays of a place would see on the average if nothing hid the sky; `open`:
+    /// of what these would.
+    glm::dvec3 expected(const SkyPlace& place, bool both, const glm::dvec3& open) const;
     TriangleShares shares_of_front(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed,
                                    int rays) const;
     /// The face and the smooth normal of a place on a triangle.

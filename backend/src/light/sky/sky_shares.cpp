@@ -48,10 +48,23 @@ double share_of_byte(uint8_t byte) {
     return root * root;
 }
 
+uint8_t tint_byte(double ratio) {
+    constexpr double kNone = 128;  // Law: the middle of a byte
+    if (!(ratio > 0) || !std::isfinite(ratio))
+        return static_cast<uint8_t>(kNone);
+    return static_cast<uint8_t>(
+        std::lround(limited(kNone + kTintSteps * std::log2(ratio), 0, kShareSteps)));
+}
+
+double octaves_of_tint(uint8_t byte) {
+    return (static_cast<double>(byte) - 128) / kTintSteps;
+}
+
 std::string SkyShares::bytes() const {
     std::string out;
     append_bytes(out, mean);
     append_bytes(out, rays);
+    append_bytes(out, static_cast<uint32_t>(tints.size()));
     append_bytes(out, static_cast<uint32_t>(seen.size()));
     out.append(reinterpret_cast<const char*>(seen.data()), seen.size());
     append_bytes(out, static_cast<uint32_t>(splits.size()));
@@ -61,6 +74,7 @@ std::string SkyShares::bytes() const {
         for (const geometry::WeldedEdge edge : edges)
             append_bytes(out, edge);
     }
+    out.append(reinterpret_cast<const char*>(tints.data()), tints.size());
     out.append(reinterpret_cast<const char*>(corners.data()), corners.size());
     return out;
 }
@@ -69,9 +83,11 @@ std::optional<SkyShares> SkyShares::of_bytes(std::string_view bytes, size_t tria
     ByteReader reader(bytes);
     SkyShares out;
     uint32_t rounds = 0;
+    uint32_t tinted = 0;
     uint32_t told = 0;
     if (!reader.take(out.mean) || !(out.mean >= 0 && out.mean <= 1) || !reader.take(out.rays) ||
-        !reader.take(told) || (told != 0 && told != triangles) || told > reader.rest().size())
+        !reader.take(tinted) || !reader.take(told) || (told != 0 && told != triangles) ||
+        told > reader.rest().size())
         return {};
     out.seen.resize(told);
     for (uint8_t& one : out.seen)
@@ -89,7 +105,14 @@ std::optional<SkyShares> SkyShares::of_bytes(std::string_view bytes, size_t tria
         if (!std::is_sorted(edges.begin(), edges.end()))
             return {};
     }
+    if (tinted > reader.rest().size())
+        return {};
+    out.tints.resize(tinted);
+    for (uint8_t& one : out.tints)
+        reader.take(one);
     const std::string_view rest = reader.rest();
+    if (tinted != 0 && tinted != 2 * rest.size())
+        return {};
     if (rest.size() % 3 != 0 || rest.size() / 3 < triangles ||
         (rounds == 0 && rest.size() / 3 != triangles))
         return {};

@@ -277,7 +277,7 @@ private:
         out.long_rounds = static_cast<uint32_t>(long_rounds_);
         out.seen.assign(request_.seen.begin(), request_.seen.end());
         out.rays = static_cast<uint32_t>(std::max(request_.rays, 0));
-        CornerShares corners(split_.mesh(), split_.welded(), request_.surface);
+        CornerShares corners(split_.mesh(), split_.welded(), request_.surface, request_.uneven);
         for (size_t i = 0; i < shares_.size(); ++i) {
             const std::optional<SkySampler::PlacedTriangle> placed =
                 sampler_.placed(split_.mesh(), i);

@@ -159,8 +159,8 @@ CONTROLS = (
     ),
     Control(
         "indirect", "Indirect", "antialias", _indirect, "", 0, 1024,
-        "How many lights stand for the image around the scene: more give finer shadows of the sky. "
-        "0: its light is the same everywhere, without shadows",
+        "The most lights that stand for the bright places of the image around the scene; in drafts "
+        "and with Bounces for all of it: more give finer shadows. 0: without shadows",
     ),
     Control(
         "bounces", "Bounces", "antialias", _bounces, "", 0, 8,

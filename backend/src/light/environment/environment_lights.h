@@ -3,8 +3,10 @@
 // does.
 #pragma once
 
+#include "light/environment/uneven_sky.h"
 #include "model/view.h"
 
+#include <memory>
 #include <vector>
 
 namespace lodestone::light {
@@ -12,11 +14,14 @@ namespace lodestone::light {
 struct EnvironmentLight {
     glm::dvec3 direction{0, 0, -1};  // the direction in which the light travels, of length 1
     glm::dvec3 irradiance{0.0};      // on a surface that faces the light
+    double angle = 0;                // radians across, of one peak that is wider than a texel
 };
 
 struct EnvironmentLights {
     glm::dvec3 ambient{0.0};               // the radiance of the uniform sky
     std::vector<EnvironmentLight> lights;  // at most as many as asked for
+    /// The sky by direction, in parts of the uniform one. Null: it is the same everywhere.
+    std::shared_ptr<const UnevenSky> uneven{};
 };
 
 /// Replaces a world's environment. Its darkest radiance, taken everywhere, is the uniform sky. The
@@ -26,8 +31,8 @@ struct EnvironmentLights {
 /// decoding. source: Debevec, A median cut algorithm for light probe sampling (the regions)
 EnvironmentLights environment_lights(const World& world, size_t count);
 
-/// The direction of a texel at (u, v) in 0...1, in the picture's own frame: u = 1/2 is +X, falling
-/// u turns to +Y; v = 1 is +Z. This is Blender's equirectangular mapping.
-glm::dvec3 equirectangular_direction(double u, double v);
+/// The same where rays find what each place sees of the sky: only its peaks become lights, so many
+/// that each stands for as much as one of `count` would for all of the sky. The rest is uneven.
+EnvironmentLights environment_peaks(const World& world, size_t count);
 
 }  // namespace lodestone::light

@@ -3,7 +3,8 @@
 #include "base/parallel.h"
 #include "image/image.h"
 #include "image/texture_sampler.h"
-#include "light/environment_lights.h"
+#include "light/environment/environment_lights.h"
+#include "light/environment/environment_sky.h"
 
 #include <cmath>
 #include <functional>

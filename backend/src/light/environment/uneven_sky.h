@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Uneven sky: the light of a sky by direction, for surfaces whose rays find what of it they see.
+#pragma once
+
+#include "base/hash.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+
+#include <span>
+#include <vector>
+
+namespace lodestone::light {
+
+/// A part of a sky: the direction in which it is seen (unit, world), its radiance and its solid
+/// angle.
+struct SkyPart {
+    glm::dvec3 direction{0.0};
+    glm::dvec3 radiance{0.0};
+    double solid_angle = 0;
+};
+
+/// The radiance of a sky by direction, in parts of one color: the radiance all around by which a
+/// surface receives as much, in luminance, as the sky gives to that which it lights most, of those
+/// facing any way with nothing around them.
+class UnevenSky {
+public:
+    /// `parts`: [height][width], as equirectangular_direction() has them, from the zenith down, in a
+    /// frame to which `to_picture` turns the world's directions.
+    UnevenSky(std::span<const SkyPart> parts, int width, int height, const glm::dmat3& to_picture);
+
+    /// The color; its hue is that of level ground and what faces up. 0 of a black sky.
+    const glm::dvec3& color() const { return color_; }
+    /// That of the part in a direction (world, any length but 0), in parts of the color.
+    glm::dvec3 toward(const glm::dvec3& direction) const;
+    /// The mean of all directions so high above the horizon; the sine of the angle.
+    glm::dvec3 at_height(double sine) const;
+    /// The light that a surface facing there receives with nothing around it (unit, world), in parts
+    /// of what a sky of the color gives.
+    glm::dvec3 received(const glm::dvec3& normal) const;
+    /// The luminance of parts of the color, in parts of its luminance.
+    double share_of(const glm::dvec3& parts) const {
+        return weights_.x * parts.x + weights_.y * parts.y + weights_.z * parts.z;
+    }
+    /// Whether surfaces facing any way receive light of about the same hue.
+    bool one_hue() const { return one_hue_; }
+    Hash hash() const { return hash_; }
+
+private:
+    void find_received(std::span<const SkyPart> parts);
+    void find_color();
+    const glm::dvec3& received_at(int row, int column) const;
+    void find_hash();
+
+    int width_;
+    int height_;
+    glm::dmat3 to_picture_;
+    glm::dvec3 color_{0.0};
+    glm::dvec3 weights_{0.0};
+    std::vector<glm::vec3> values_;
+    std::vector<glm::vec3> by_height_;  // from below up, each with as much of the sphere
+    std::vector<glm::dvec3> received_;  // of surfaces [height][turn], from the zenith down
+    bool one_hue_ = true;
+    Hash hash_ = 0;
+};
+
+}  // namespace lodestone::light

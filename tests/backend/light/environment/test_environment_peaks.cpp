@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the light of skies by direction, and which of their peaks become lights.
+#include "image/image.h"
+#include "image/texture_sampler.h"
+#include "light/environment/environment_lights.h"
+#include "light/environment/environment_sky.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+
+using namespace lodestone;
+using light::environment_peaks;
+using light::EnvironmentLights;
+
+namespace {
+
+using Radiance = std::function<glm::dvec3(const glm::dvec3&)>;
+
+/// A world whose picture has this radiance by direction.
+World world_of(const Radiance& radiance) {
+    image::Image sky;
+    sky.width = 128;
+    sky.height = 64;
+    sky.linear = true;
+    for (int y = 0; y < sky.height; ++y) {
+        for (int x = 0; x < sky.width; ++x) {
+            const glm::dvec3 color = radiance(light::equirectangular_direction(
+                (x + 0.5) / sky.width, 1 - (y + 0.5) / sky.height));
+            for (int c = 0; c < 3; ++c)
+                sky.pixels.push_back(static_cast<float>(color[c]));
+            sky.pixels.push_back(1);
+        }
+    }
+    World world;
+    world.environment = image::make_picture(image::exr_bytes(sky), ColorSpace::Linear, "sky");
+    return world;
+}
+
+glm::dvec3 upper_half(const glm::dvec3& d) {
+    return glm::dvec3(d.z > 0 ? 2 : 0);
+}
+/// A sun of a degree over a dim sky.
+glm::dvec3 sunny(const glm::dvec3& d) {
+    const glm::dvec3 sun = glm::normalize(glm::dvec3(1, -1, 1));
+    return glm::dot(d, sun) > std::cos(0.04) ? glm::dvec3(4000, 3000, 2000)
+                                             : glm::dvec3(0.5, 0.6, 1);
+}
+
+}  // namespace
+
+TEST(EnvironmentPeaks, WithoutAPictureThereIsNoLight) {
+    EXPECT_EQ(environment_peaks({}, 24).ambient, glm::dvec3(0.0));
+    EXPECT_FALSE(environment_peaks({}, 24).uneven);
+}
+
+TEST(EnvironmentPeaks, ABlackPictureGivesNoLight) {
+    const EnvironmentLights sky =
+        environment_peaks(world_of([](const glm::dvec3&) { return glm::dvec3(0.0); }), 24);
+    EXPECT_EQ(sky.ambient, glm::dvec3(0.0));
+    EXPECT_TRUE(sky.lights.empty());
+    EXPECT_EQ(sky.uneven->toward({0, 0, 1}), glm::dvec3(0.0));
+    EXPECT_EQ(sky.uneven->at_height(0.5), glm::dvec3(0.0));
+}
+
+TEST(EnvironmentPeaks, AUniformPictureIsOneEverywhere) {
+    World world = world_of([](const glm::dvec3&) { return glm::dvec3(1, 0.5, 0.25); });
+    world.environment_strength = {2, 2, 2};
+    const EnvironmentLights sky = environment_peaks(world, 24);
+    EXPECT_TRUE(sky.lights.empty());
+    EXPECT_TRUE(sky.uneven->one_hue());
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(sky.ambient[c], glm::dvec3(2, 1, 0.5)[c], 0.01);
+        for (const double z : {-1.0, -0.1, 0.5, 1.0}) {
+            EXPECT_NEAR(sky.uneven->at_height(z)[c], 1, 0.01);
+            EXPECT_NEAR(sky.uneven->toward({std::sqrt(1 - z * z), 0, z})[c], 1, 0.01);
+        }
+    }
+}
+
+TEST(EnvironmentPeaks, TheSurfaceThatIsLitMostHasAShareOfOne) {
+    const EnvironmentLights sky = environment_peaks(world_of(upper_half), 24);
+    EXPECT_TRUE(sky.lights.empty());
+    EXPECT_NEAR(sky.ambient.x, 2, 0.02);  // what level ground receives, over pi
+    EXPECT_NEAR(sky.uneven->toward({0.6, 0, 0.8}).x, 1, 0.01);
+    EXPECT_EQ(sky.uneven->toward({0.6, 0, -0.8}).x, 0);
+    EXPECT_EQ(sky.uneven->at_height(-0.5).x, 0);
+    EXPECT_NEAR(sky.uneven->at_height(0.5).x, 1, 0.01);
+}
+
+TEST(EnvironmentPeaks, ASunIsOneLightAndTheSkyIsWithoutIt) {
+    const EnvironmentLights sky = environment_peaks(world_of(sunny), 24);
+    ASSERT_EQ(sky.lights.size(), 1u);
+    const glm::dvec3 sun = glm::normalize(glm::dvec3(1, -1, 1));
+    EXPECT_GT(-glm::dot(sky.lights[0].direction, sun), std::cos(0.02));
+    const double solid_angle = 2 * kPi * (1 - std::cos(0.04));
+    EXPECT_NEAR(sky.lights[0].irradiance.x, 4000 * solid_angle,
+                0.25 * 4000 * solid_angle);  // a part is the sky's
+    EXPECT_LT(sky.lights[0].angle, 0.1);
+    EXPECT_NEAR(sky.lights[0].irradiance.y / sky.lights[0].irradiance.x, 0.75, 0.01);
+    EXPECT_LT(sky.uneven->share_of(sky.uneven->toward(sun)), 10);
+    EXPECT_NEAR(sky.uneven->share_of(sky.uneven->toward({-1, 1, 0})), 1, 0.05);
+    EXPECT_NEAR(sky.ambient.z / sky.ambient.x, 2, 0.1);
+}
+
+TEST(EnvironmentPeaks, AWidePeakIsAWideLight) {
+    const EnvironmentLights sky =
+        environment_peaks(world_of([](const glm::dvec3& d) {
+                              return glm::dvec3(0.8 * d.x + 0.6 * d.z > std::cos(0.08) ? 100 : 1);
+                          }),
+                          8);
+    ASSERT_EQ(sky.lights.size(), 1u);
+    EXPECT_NEAR(sky.lights[0].angle, 0.12, 0.05);  // but for a texel
+}
+
+TEST(EnvironmentPeaks, TurningThePictureTurnsTheSky) {
+    World world = world_of([](const glm::dvec3& d) {
+        return glm::dvec3(d.x > 0.5 ? 4.0 : d.x < -0.5 ? 1.0 : 2.0);
+    });
+    world.environment_turn = glm::dmat3(glm::rotate(glm::dmat4(1.0), kPi / 2, {0, 0, 1}));
+    const EnvironmentLights sky = environment_peaks(world, 24);
+    const auto toward = [&](const glm::dvec3& d) { return sky.uneven->toward(d).x; };
+    EXPECT_NEAR(toward({0, -1, 0}) / toward({0, 1, 0}), 4, 0.01);
+    EXPECT_NEAR(toward({1, 0, 0}), toward({-1, 0, 0}), 0.01);
+}
+
+TEST(EnvironmentPeaks, OtherSkiesHaveOtherHashes) {
+    const auto hash = [](const World& world) {
+        return environment_peaks(world, 24).uneven->hash();
+    };
+    World turned = world_of(sunny);
+    turned.environment_turn = glm::dmat3(glm::rotate(glm::dmat4(1.0), 1.0, {0, 0, 1}));
+    EXPECT_EQ(hash(world_of(sunny)), hash(world_of(sunny)));
+    EXPECT_NE(hash(world_of(sunny)), hash(turned));
+    EXPECT_NE(hash(world_of(sunny)), hash(world_of(upper_half)));
+}

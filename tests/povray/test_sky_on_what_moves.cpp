@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards the sky's light on what moves in an animation, and on sides under an uneven sky.
+#include "image/image.h"
+#include "image/texture_sampler.h"
+#include "light/environment/environment_sky.h"
+#include "povray/povray_scenes.h"
+#include "povray_export/lamp/sky_occlusion.h"
+
+#include <algorithm>
+#include <map>
+#include <regex>
+
+using namespace lodestone;
+using namespace lodestone::povray;
+using scenes::Builder;
+
+namespace {
+
+class SkyOnWhatMoves : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string reason;
+        if (!ray::available(&reason))
+            GTEST_SKIP() << reason;
+        std::filesystem::remove_all(own_scratch());  // with what an earlier run kept
+        builder.model.world.color = glm::dvec3(0.5);
+    }
+
+    static Affine at(double x, double y, double z) { return {glm::dmat3(1.0), {x, y, z}}; }
+    /// The share of the sky's light on each object, in the mean.
+    std::map<ObjectIndex, double> means() {
+        const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+        Problems problems;
+        const SkyOcclusion light(builder.model, cut, {}, problems, {});
+        std::map<ObjectIndex, double> out;
+        for (const uint32_t node : cut.chosen)
+            out[cut.nodes[node].object] = light.mean_of_node(node)->factor;
+        return out;
+    }
+
+    Builder builder;
+};
+using SkyOnSides = SkyOnWhatMoves;
+
+}  // namespace
+
+TEST_F(SkyOnWhatMoves, WhatMovesHidesTheSkyFromItselfAlone) {
+    const ObjectIndex floor = builder.mesh(shapes::quad(4, 4));
+    const ObjectIndex box = builder.mesh(shapes::box({-1, -1, .2}, {1, 1, 1}));
+    builder.place(floor, at(-2, -2, 0));
+    builder.place(box);
+    builder.model.objects[box].deforms = true;
+    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+    Problems problems;
+    const SkyOcclusion light(builder.model, cut, {}, problems, {});
+    for (size_t i = 0; i < cut.chosen.size(); ++i) {
+        if (cut.nodes[cut.chosen[i]].object == floor) {
+            EXPECT_EQ(light.of(i)->shares->mean, 1);
+        }
+    }
+}
+
+// Boxes that move were lit from below, through the ground that they stand on.
+TEST_F(SkyOnWhatMoves, WhatIsAroundHidesTheSkyFromWhatMoves) {
+    Primitive primitive;
+    primitive.half_size = {.5, .5, .5};
+    const ObjectIndex solid = builder.primitive(Kind::Box, primitive, {builder.matte({1, 1, 1})});
+    const ObjectIndex box = builder.mesh(shapes::box({-1, -1, -1}, {1, 1, 1}));
+    builder.place(solid, at(0, 0, .5));
+    builder.place(box, at(9, 0, 1));
+    for (const ObjectIndex moving : {solid, box})
+        builder.model.objects[moving].deforms = true;
+    const std::map<ObjectIndex, double> alone = means();
+    EXPECT_NEAR(alone.at(solid), 1, .02);
+    EXPECT_NEAR(alone.at(box), 1, .02);
+    builder.place(builder.mesh(shapes::quad(200, 200)), at(-100, -100, -.01));
+    const std::map<ObjectIndex, double> on_ground = means();
+    // Of six sides the upper one sees all of the sky, four see half of it and one none.
+    EXPECT_NEAR(on_ground.at(solid), .5, .05);
+    EXPECT_NEAR(on_ground.at(box), .5, .05);
+}
+
+// A sky of two sides lit everything by 24 suns, each a ray at every point.
+TEST_F(SkyOnSides, ASideIsLitByTheSkyThatItFacesWithoutRays) {
+    image::Image picture;
+    picture.width = 64;
+    picture.height = 32;
+    picture.linear = true;
+    for (int i = 0; i < 64 * 32; ++i) {
+        const glm::dvec3 way = light::equirectangular_direction((i % 64 + 0.5) / 64, 0.5);
+        for (const double channel : {1 + way.x, 1.0, 1 - way.x, 1.0})  // red toward X, then blue
+            picture.pixels.push_back(static_cast<float>(channel));
+    }
+    World& world = builder.model.world;
+    world.environment = image::make_picture(image::exr_bytes(picture), ColorSpace::Linear, "sky");
+    builder.place(builder.mesh(shapes::box({-1, -1, -1}, {1, 1, 1})));
+    ExportOptions options;
+    options.folder = own_scratch();
+    Problems problems;
+    const ExportReport report = scenes::write(builder.finish(), scenes::above(), options, problems);
+    EXPECT_EQ(report.sky_lights, 0u);
+    const std::string scene = read_file(own_scratch() / "scene.pov");
+    EXPECT_EQ(scene.find("light_source"), std::string::npos);
+    const size_t name = scene.find("#include \"") + 10;
+    const std::string mesh =
+        read_file(own_scratch() / scene.substr(name, scene.find('"', name) - name));
+    std::vector<double> reddish;  // red beside blue, by texture
+    const std::regex ambient("ambient rgb <([^,]*),([^,]*),([^>]*)>");
+    for (std::sregex_iterator found(mesh.begin(), mesh.end(), ambient), end; found != end; ++found)
+        reddish.push_back(std::stod((*found)[1]) / std::stod((*found)[3]));
+    ASSERT_FALSE(reddish.empty());
+    // What faces X receives five times as much red as blue, or more: (1 + 2/3) / (1 - 2/3).
+    EXPECT_GT(*std::max_element(reddish.begin(), reddish.end()), 3);
+    EXPECT_LT(*std::min_element(reddish.begin(), reddish.end()), 1.0 / 3);
+}
