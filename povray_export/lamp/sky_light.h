@@ -21,8 +21,8 @@ uint8_t grade_of_share(double share);
 /// The hue of the sky's light, in octaves of red and blue beside green, in parts of its color.
 using SkyTint = glm::dvec2;
 /// The steps of a tint's octave for which textures are written.
-/// Taste: 9 % each, of colors that are blended between corners; more are more textures.
-inline constexpr double kTintGrades = 8;
+/// Taste: 4 % each; colors are blended between corners; more are more textures.
+inline constexpr double kTintGrades = 16;
 /// The factors of a tint on the parts of a light of `color`, whose luminance they leave.
 glm::dvec3 factors_of_tint(const SkyTint& tint, const glm::dvec3& color);
 

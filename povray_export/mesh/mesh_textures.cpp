@@ -325,13 +325,18 @@ MeshTextures::SkyGrade MeshTextures::sky_grade(size_t triangle, int corner) cons
         tints[static_cast<size_t>(i)] = sky_->tint(source, i);
     }
     const auto grade = [&](const glm::dvec3& weights) {
+        SkyGrade out;
+        out.share =
+            grade_of_share(weights.x * shares[0] + weights.y * shares[1] + weights.z * shares[2]);
         const SkyTint tint = weights.x * tints[0] + weights.y * tints[1] + weights.z * tints[2];
-        const auto step = [](double octaves) {
-            return static_cast<int8_t>(std::lround(kTintGrades * octaves));
+        // Taste: the eye sees fewer hues of what is dark.
+        const int coarser = out.share < kSkyGrades / 4 ? 4 : out.share < kSkyGrades / 2 ? 2 : 1;
+        const auto step = [coarser](double octaves) {
+            return static_cast<int8_t>(coarser * std::lround(kTintGrades * octaves / coarser));
         };
-        return SkyGrade{
-            grade_of_share(weights.x * shares[0] + weights.y * shares[1] + weights.z * shares[2]),
-            step(tint.x), step(tint.y)};
+        out.red = step(tint.x);
+        out.blue = step(tint.y);
+        return out;
     };
     const bool even = slots_[slot_at_[mesh_.slot(source)]].even_sky;
     const Triangle& shown = shown_.triangles[triangle];

@@ -202,16 +202,17 @@ class World(unittest.TestCase):
 
     def test_a_drawn_sky_is_kept_beside_the_levels(self):
         from lodestone.bridge.world import drawn_sky
+        from lodestone.core.session.addon_session import end_session
 
         self.sky_texture(sun_elevation=0.3)
         with tempfile.TemporaryDirectory() as store:
             _, _, (first,), _ = self.taken(store)
             (kept,) = Path(store, drawn_sky.FOLDER).glob("*.exr")
-            drawn_sky._drawn.clear()
+            end_session()
             with unittest.mock.patch.object(drawn_sky, "_draw", side_effect=AssertionError):
                 self.assertEqual(self.taken(store)[2], [first])
             for damaged in (b"", kept.read_bytes()[:1000]):
-                drawn_sky._drawn.clear()
+                end_session()
                 kept.write_bytes(damaged)
                 self.assertEqual(self.taken(store)[2], [first])
             self.sky_texture(sun_elevation=0.4)

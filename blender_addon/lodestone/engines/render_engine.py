@@ -491,6 +491,5 @@ def unregister():
 
 def _leave():
     """No render runs any more that could use what is remembered."""
-    whole_panels.end()
     end_session()
     _unregister()

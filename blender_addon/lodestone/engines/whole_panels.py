@@ -13,44 +13,53 @@ import sys
 
 import bpy
 
+from ..core.session.addon_session import addon_session
+
 _WHOLE_S = 5.0  # Law: longer than any panel takes to draw
-_usual_s = None  # the interval of Blender, while there is another
 
 
-def _begin():
-    global _usual_s
-    if _usual_s is None and not bpy.app.background:
-        _usual_s = sys.getswitchinterval()
-        sys.setswitchinterval(_WHOLE_S)
+class _Turns:
+    """How long a thread runs Python before another one may; part of the session."""
+
+    def __init__(self):
+        self._usual_s = None  # Blender's own, while there is another
+
+    def lengthen(self):
+        """The engine may be called."""
+        if self._usual_s is None and not bpy.app.background:
+            self._usual_s = sys.getswitchinterval()
+            sys.setswitchinterval(_WHOLE_S)
+
+    def close(self):
+        """It is not called any more, or works."""
+        if self._usual_s is not None:
+            sys.setswitchinterval(self._usual_s)
+            self._usual_s = None
 
 
-def end():
-    """The engine is called no more."""
-    global _usual_s
-    if _usual_s is not None:
-        sys.setswitchinterval(_usual_s)
-        _usual_s = None
+def _turns():
+    return addon_session().part(_Turns)
 
 
 @contextlib.contextmanager
 def engine_works():
     """Threads take turns as usual meanwhile; afterwards the engine may be called again."""
-    end()
+    _turns().close()
     try:
         yield
     finally:
-        _begin()
+        _turns().lengthen()
 
 
 @bpy.app.handlers.persistent
 def _on_begin(rendered, *_):
     if rendered.render.engine == "LODESTONE_POVRAY":
-        _begin()
+        _turns().lengthen()
 
 
 @bpy.app.handlers.persistent
 def _on_end(*_):
-    end()
+    _turns().close()
 
 
 HANDLERS = (("render_init", _on_begin), ("render_complete", _on_end), ("render_cancel", _on_end))

@@ -16,6 +16,7 @@ import bpy
 
 from ...core.batch import process_session
 from ...core.native import lodestone_native as native
+from ...core.session.addon_session import addon_session
 from .sky_texture import Color, MeanSky, Sky, SkySun, direction_to_sun, has_sun
 
 FOLDER = "skies"  # in the folder of levels
@@ -23,7 +24,6 @@ _SCRIPT = Path(__file__).with_name("sky_in_blender.py")
 _LONGEST_S = 60.0  # Taste: a hundred times what it takes
 _MOST_KEPT = 32  # Taste: skies in a folder, 100 kB each, or in memory
 _VERSION = 1  # of what is kept
-_drawn: dict[str, "_Pictures"] = {}  # by what they were drawn from
 
 
 class _Pictures(NamedTuple):
@@ -31,6 +31,13 @@ class _Pictures(NamedTuple):
     height: int
     pixels: array  # [height][width][4], lowest row first
     sun: Color
+
+
+class DrawnSkies:
+    """Those that were drawn; part of the session."""
+
+    def __init__(self) -> None:
+        self.pictures: dict[str, _Pictures] = {}  # by what they were drawn from
 
 
 class DrawnSky(Sky):
@@ -57,17 +64,18 @@ def drawn_sky(node: Any, width: int, height: int, folder: str) -> Sky:
     values = _values(node)
     told = json.dumps([_VERSION, bpy.app.version_string, width, height, values], sort_keys=True)
     key = hashlib.sha256(told.encode()).hexdigest()[:32]
-    if key not in _drawn:
+    drawn = addon_session().part(DrawnSkies).pictures
+    if key not in drawn:
         found = _from_folder(Path(folder) / FOLDER, key) if folder else None
         found = found or _draw(
             values, width, height, Path(folder) / FOLDER if folder else None, key
         )
         if found is None:
             return MeanSky(node)
-        while len(_drawn) >= _MOST_KEPT:
-            del _drawn[next(iter(_drawn))]
-        _drawn[key] = found
-    pictures = _drawn[key]
+        while len(drawn) >= _MOST_KEPT:
+            del drawn[next(iter(drawn))]
+        drawn[key] = found
+    pictures = drawn[key]
     sun = None
     if has_sun(node) and max(pictures.sun) > 0.0:
         sun = SkySun(direction_to_sun(node), pictures.sun, node.sun_size)
