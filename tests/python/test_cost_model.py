@@ -38,9 +38,8 @@ class Cost(unittest.TestCase):
         self.assertAlmostEqual(found.parse_cpu_s, 95 * 0.055 + 10 * 0.023)
         kept = 18 + 3.6864 + 3.85 * 95 + 2.57 * 10
         self.assertAlmostEqual(found.peak_bytes / 1e6, kept, places=5)
-        # 2.8e-9 * 1e8^.5 * 1.15 each, 1 + .63 * 9 samples a pixel in units of 6.7 / 4
-        samples = (1 + 0.63 * 9) * 4 / 6.7
-        self.assertAlmostEqual(found.trace_cpu_s, 230400 * samples * 2.8e-5 * 1.15)
+        # 2.24e-9 * 1e8^.5 * 1.15 each, 1 + .44 * 9 samples a pixel
+        self.assertAlmostEqual(found.trace_cpu_s, 230400 * 4.96 * 2.24e-5 * 1.15)
         self.assertAlmostEqual(found.wall_s, 0.6 + found.parse_cpu_s + found.trace_cpu_s / 2)
 
     def test_a_picture_of_much_sky_takes_less(self):
@@ -60,7 +59,7 @@ class Cost(unittest.TestCase):
         direct = cost_model.predict(WORK).trace_cpu_s
         self.assertEqual(cost_model.gathering(0, 200, 0.6), 0.0)
         rays = cost_model.gathering(2, 200, 0.5)
-        self.assertAlmostEqual(rays, 0.1 / 0.25 * 200 * 2)
+        self.assertAlmostEqual(rays, 0.125 / 0.25 * 200 * 2)
         bouncing = cost_model.predict(replace(WORK, gathering=rays)).trace_cpu_s
         self.assertAlmostEqual(bouncing, direct * (WORK.samples + rays) / WORK.samples)
 
@@ -69,7 +68,20 @@ class Cost(unittest.TestCase):
         found.append(replace(WORK, antialias=Antialias.REFERENCE).samples)
         found.insert(0, replace(WORK, antialias=Antialias.OFF).samples)
         self.assertEqual(found, sorted(found))
-        self.assertAlmostEqual(found[1] / found[0], 1 + 0.63 * 4)
+        self.assertAlmostEqual(found[1] / found[0], 1 + 0.44 * 4)
+
+    def test_all_pixels_were_expected_to_differ_as_much_at_any_threshold(self):
+        coarse, fine, all_of_them = (
+            replace(WORK, threshold=threshold, depth=2).samples for threshold in (0.6, 0.3, 0.0)
+        )
+        self.assertAlmostEqual(coarse, 1 + 4 * 0.044 / 0.6)
+        self.assertAlmostEqual(fine, 1 + 4 * 0.044 / 0.3)
+        self.assertEqual(all_of_them, 5.0)
+        quality = quality_tree.quality(4.0)
+        view = SimpleNamespace(camera=CAMERA, width=4, height=3, border=(0, 0, 0, 0))
+        exported = SimpleNamespace(**EXPORTED)
+        work = cost_model.Work.of(SUMMARY, view, exported, Antialias.FINAL, 1, quality)
+        self.assertEqual(work.threshold, 0.6)
 
     def test_full_detail_taught_that_levels_take_ten_times_as_long(self):
         slow = SimpleNamespace(parse_cpu_s=5.2, trace_cpu_s=300.0, peak_bytes=10**9)
@@ -82,7 +94,7 @@ class Cost(unittest.TestCase):
     def test_depth_of_field_was_expected_to_take_no_longer(self):
         sharp = cost_model.predict(WORK).trace_cpu_s
         blurred = cost_model.predict(replace(WORK, blurred=True)).trace_cpu_s
-        self.assertAlmostEqual(blurred, sharp * 45 / WORK.samples)  # both at the usual antialiasing
+        self.assertAlmostEqual(blurred, sharp * 56 / WORK.samples)  # both at the usual antialiasing
         exported = SimpleNamespace(**EXPORTED)
         quality = quality_tree.quality(1.0)
         for camera, expected in (

@@ -22,26 +22,25 @@ from ..native import lodestone_native as native
 from .quality_tree import Quality
 
 FILE = "cost.json"
-_MODEL = 2  # ratios to what another model foretold say nothing
+_MODEL = 3  # ratios to what another model foretold say nothing
 # To read a byte of text and a texel; what they take in memory
 _TEXT_S, _TEXEL_S = 5.5e-8, 2.3e-8
 _TEXT_BYTES, _TEXEL_BYTES = 3.85, 2.57
 # A sample takes this, times the root of the texts in bytes, of which the first make no difference
-_SAMPLE_S, _FEWEST_TEXT = 2.8e-9, 5e6
+_SAMPLE_S, _FEWEST_TEXT = 2.24e-9, 5e6
 _SHADOW_SHARE = 0.15  # a shadow ray beside a sample
 _SKY_SHARE = 0.1  # a sample that meets nothing beside one that does
 _OBJECT_BYTES = 760  # of an object, besides what its line in scene.pov counts as
-_GATHERED = 0.1  # places a pixel where light is gathered, at an error of 1
-# Of a pixel's n x n more samples this share is taken in the mean, and the unit below is for 6.7 of
-# them; measured in zengarden and ravenbridge_mansion (0.7) and the sample street (0.47)
-_MORE_SAMPLES = 0.63
-_SAMPLE = 4.0 / 6.7
+_GATHERED = 0.125  # places a pixel where light is gathered, at an error of 1
+# The share of pixels that get n x n more samples, times the difference from which on they do: in
+# the pictures of 14 views of scenes and nights 0.44, 0.15 and 0.055 for 0.1, 0.3 and 0.6
+_MORE_SAMPLES = 0.044
 _BLURRED: dict[
     int, float
 ] = {  # with depth of field, instead of these; measured, on a sharp floor and soft heads
-    native.Antialias.OFF: 7.0,
-    native.Antialias.FINAL: 45.0,
-    native.Antialias.REFERENCE: 153.0,
+    native.Antialias.OFF: 8.75,
+    native.Antialias.FINAL: 56.0,
+    native.Antialias.REFERENCE: 191.0,
 }
 _START_S = 0.6  # seconds by the clock, whatever is rendered
 _EMPTY_BYTES, _PIXEL_BYTES = 18e6, 16
@@ -93,6 +92,7 @@ class Work:
     blurred: bool = False  # has depth of field
     depth: int = 3  # samples along the side of a pixel that gets more of them
     exact: bool = False  # everything is drawn as it is, masks too
+    threshold: float = 0.1  # the difference of pixels from which on they get more samples
     lamp_rays: float = 0.0  # those of shadow_rays that go to lamps
     sky_lights: int = 0  # those to the world's image, one a light
     soft_lamps: int = 0
@@ -111,10 +111,10 @@ class Work:
         if self.blurred:
             return _BLURRED[self.antialias]
         if self.antialias == native.Antialias.OFF:
-            return _SAMPLE
+            return 1.0
         if self.antialias == native.Antialias.REFERENCE:
-            return _SAMPLE * 17.0
-        return _SAMPLE * (1.0 + _MORE_SAMPLES * self.depth**2)
+            return 17.0
+        return 1.0 + min(1.0, _MORE_SAMPLES / max(self.threshold, 1e-3)) * self.depth**2
 
     @classmethod
     def of(
@@ -135,8 +135,8 @@ class Work:
         blurred = view.camera.aperture > 0.0 and not view.camera.orthographic
         return cls(
             *sums, *whole, exported.shadow_rays, antialias, threads, rays, blurred,
-            quality.antialias_depth, quality.pixel_error <= 0.0, exported.lamp_rays,
-            exported.sky_lights, exported.soft_lamps,
+            quality.antialias_depth, quality.pixel_error <= 0.0, quality.antialias_threshold,
+            exported.lamp_rays, exported.sky_lights, exported.soft_lamps,
             1.0 if view.border[2] else exported.covered,  # that of the whole picture
             max(0, summary.occurrences - exported.left_out),
         )  # fmt: skip
