@@ -2,6 +2,13 @@
 #include "povray_export/lamp/scene_sky.h"
 
 namespace lodestone::povray {
+namespace {
+
+// The pixels across from which on the sides of a box have their own light of the sky.
+// Taste: a smaller value shades smaller boxes, for twenty times the text of each.
+constexpr double kSidesShow = 8;
+
+}  // namespace
 
 SceneSky::SceneSky(const Model& model, const Shading& shading, bool lit,
                    const std::filesystem::path& folder, Problems& problems)
@@ -21,11 +28,15 @@ void SceneSky::write(bool found_by_rays) {
         folder_, problems_);
 }
 
-bool SceneSky::find_light(const choose::Cut& cut, SkyOcclusionOptions options, const Job& job) {
+bool SceneSky::find_light(const choose::Cut& cut, SkyOcclusionOptions options,
+                          const PixelField& pixels, const Job& job) {
     if (!by_rays_ || written_.ambient == glm::dvec3(0.0))
         return true;
     options.rays = shading_.sky_rays;
     options.uneven = written_.uneven;
+    options.sides_show = [&pixels](const Bound& bound) {
+        return 2 * bound.radius >= kSidesShow * pixels.at(bound);
+    };
     light_.emplace(model_, cut, options, problems_, job);
     if (light_->found() || !written_.uneven)
         return true;

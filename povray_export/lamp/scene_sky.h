@@ -4,6 +4,7 @@
 
 #include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/lamp/sky_writer.h"
+#include "povray_export/mesh/pixel_field.h"
 #include "povray_export/scene/shading.h"
 
 #include <optional>
@@ -22,7 +23,8 @@ public:
     /// Finds the light of the sky on what a cut draws, where rays are to; `options` without the sky
     /// itself. False: they found none, and the sky was written anew, with other lights.
     /// Throws Error(Cancelled).
-    bool find_light(const choose::Cut& cut, SkyOcclusionOptions options, const Job& job);
+    bool find_light(const choose::Cut& cut, SkyOcclusionOptions options, const PixelField& pixels,
+                    const Job& job);
 
     /// See SkyOcclusion; null and false where nothing was found.
     SkyLightPtr of(size_t position) const { return light_ ? light_->of(position) : nullptr; }

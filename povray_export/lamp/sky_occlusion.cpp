@@ -109,6 +109,21 @@ private:
         return hasher.result();
     }
 
+    /// Whether the corners of a thing have shares of their own.
+    bool has_corners(const SkyThing& thing) const {
+        const RepresentationSummary& summary = thing.representation->summary;
+        return summary.kind == Kind::Mesh ||
+               (summary.kind == Kind::Box && options_.sides_show &&
+                options_.sides_show(transformed(summary.bound, thing.world)));
+    }
+
+    /// The triangles whose corners have shares.
+    static uint64_t triangles_of(const Representation& representation) {
+        return representation.summary.kind == Kind::Mesh
+                   ? representation.summary.cost.triangles
+                   : solid_triangles(representation.summary.kind, representation.payload);
+    }
+
     /// Lists all that is to be known.
     void find_wanted() {
         shares_of_.resize(all_.things().size(), nullptr);
@@ -117,8 +132,9 @@ private:
             const SkyThing& thing = all_.things()[i];
             if (all_.skipped(thing) || (options_.needs != nullptr && !options_.needs->seen(i)))
                 continue;
-            const bool once = all_.in_place(thing);
-            if (thing.representation->summary.kind == Kind::Mesh)
+            const bool cornered = has_corners(thing);
+            const bool once = cornered && all_.in_place(thing);
+            if (cornered)
                 shares_of_[i] = want_shares(thing, once);
             if (shares_of_[i] != nullptr)
                 note_seen(i, *shares_of_[i]);
@@ -133,8 +149,12 @@ private:
     static bool fits(const Representation& representation, const light::SkyShares& shares) {
         if (!representation.resident())
             return false;
-        return light::whole(representation.mesh(), shares) ||
-               light::split_for_sky(representation.mesh(), shares).has_value();
+        if (representation.summary.kind == Kind::Mesh)
+            return fits(representation.mesh(), shares);
+        return fits(tessellated(representation), shares);
+    }
+    static bool fits(const Mesh& mesh, const light::SkyShares& shares) {
+        return light::whole(mesh, shares) || light::split_for_sky(mesh, shares).has_value();
     }
 
     WantedShares* want_shares(const SkyThing& thing, bool once) {
@@ -147,7 +167,7 @@ private:
         wanted.placed = once ? &thing : nullptr;
         if (all_.finest_of(thing).summary.hash != thing.representation->summary.hash)
             wanted.original = &all_.finest_of(thing);
-        wanted.seen.assign(thing.representation->summary.cost.triangles, 0);
+        wanted.seen.assign(triangles_of(*thing.representation), 0);
         return &wanted;
     }
 
@@ -165,7 +185,7 @@ private:
 
     /// The triangles of a surface that count as seen.
     static uint64_t seen_of(const WantedShares& wanted) {
-        return wanted.seen.empty() ? wanted.representation->summary.cost.triangles
+        return wanted.seen.empty() ? triangles_of(*wanted.representation)
                                    : static_cast<uint64_t>(std::count(
                                          wanted.seen.begin(), wanted.seen.end(), uint8_t{1}));
     }
@@ -175,7 +195,7 @@ private:
         std::vector<uint64_t> counts;
         std::vector<uint64_t> all;
         for (auto& [key, wanted] : wanted_shares_) {
-            all.push_back(wanted.representation->summary.cost.triangles);
+            all.push_back(triangles_of(*wanted.representation));
             if (static_cast<double>(seen_of(wanted)) >
                 kMostSeen * static_cast<double>(wanted.seen.size()))
                 wanted.seen.clear();
@@ -186,7 +206,7 @@ private:
         const CornerRays whole_rays(usual, all, options_.pixels);
         for (auto& [key, wanted] : wanted_shares_) {
             wanted.rays = rays.of(seen_of(wanted));
-            wanted.whole_rays = whole_rays.of(wanted.representation->summary.cost.triangles);
+            wanted.whole_rays = whole_rays.of(triangles_of(*wanted.representation));
         }
     }
 
@@ -203,8 +223,7 @@ private:
                          .value(horizon.up.z)
                          .result();
         if (const auto bytes = bakes_.find(wanted.key)) {
-            auto found =
-                light::SkyShares::of_bytes(*bytes, wanted.representation->summary.cost.triangles);
+            auto found = light::SkyShares::of_bytes(*bytes, triangles_of(*wanted.representation));
             if (found && fits(*wanted.representation, *found))
                 wanted.found = std::make_shared<const light::SkyShares>(std::move(*found));
         }

@@ -35,6 +35,9 @@ struct SkyOcclusionOptions {
     /// The needs of the picture: the sky's light is not found on things that it does not show.
     /// Null: it shows all.
     const PictureNeeds* needs = nullptr;
+    /// Whether a box (world) is so large in the picture that its sides show what each of them has of
+    /// the sky. Null: boxes have the mean of their sides.
+    std::function<bool(const Bound&)> sides_show;
     /// Makes the finest level of everything resident; asked for only where something is to be
     /// found that was not kept.
     std::function<void()> load_finest;
@@ -45,6 +48,7 @@ struct SkyOcclusionOptions {
 /// that is placed once has the shares of its corners as it stands there. What is placed more often
 /// has those of its own shape, times one of at most four grades of what is around its placement,
 /// which changes evenly over the thing.
+/// Boxes have the mean of their sides, or, where they are large in the picture, the light of each.
 /// Levels have the light of the outermost places near them of their finest level, and what stands in for a group
 /// that of all below it. What moves in an animation hides the sky from itself alone; what is around
 /// it, where it is now, hides the sky from it.

@@ -155,7 +155,7 @@ void SkyThings::choose_copied() {
 }
 
 bool SkyThings::in_place(const SkyThing& thing) const {
-    if (thing.moves || thing.representation->summary.kind != Kind::Mesh)
+    if (thing.moves)
         return false;
     if (thing.group)
         return stand_ins_.at(thing.representation->summary.hash) == 1;

@@ -53,7 +53,7 @@ public:
     const Representation& finest_of(const SkyThing& thing) const;
     /// Whether nothing is drawn for a thing itself.
     bool skipped(const SkyThing& thing) const;
-    /// Whether a thing's shares are found where it stands.
+    /// Whether a thing's shares, if its corners have some, are found where it stands.
     bool in_place(const SkyThing& thing) const;
     /// The triangles that splits may add to something where it stands: large things have more of
     /// them, whatever the cut draws.

@@ -70,21 +70,16 @@ public:
         check(mesh);
         if (!options_.textures)
             return mesh_text(mesh, nullptr, identifier_, job_);
-        if (options_.sky && options_.sky->shares && !light::whole(mesh, *options_.sky->shares)) {
-            // The triangles are split where the sky's light on them varies.
-            auto split = light::split_for_sky(mesh, *options_.sky->shares);
-            if (!split)
-                fail(Status::Internal, "the sky's light on a mesh is that on another mesh");
-            Representation lit = representation_;
-            lit.payload = std::make_shared<const Mesh>(std::move(split->mesh));
-            RepresentationOptions options = options_;
-            options.shown = shown_parts(options_.shown, split->sources);
-            return textured_text(lit, options);
-        }
-        return textured_text(representation_, options_);
+        return lit_text(representation_, mesh);
     }
 
     std::string operator()(const Solid& solid) const {
+        if (options_.textures && options_.sky && options_.sky->shares) {
+            Representation lit = representation_;
+            lit.payload = std::make_shared<const Mesh>(tessellated(representation_));
+            lit.summary.kind = Kind::Mesh;
+            return lit_text(lit, lit.mesh());
+        }
         const std::string text = solid_text(model_, representation_, solid, options_, pictures_);
         return text.empty() ? text : declare() + text;
     }
@@ -146,6 +141,20 @@ private:
         for (const uint32_t source : sources)
             out.shown.push_back(shown->shown.at(source));
         return std::make_shared<const ShownTriangles>(std::move(out));
+    }
+
+    /// The text of a mesh, whose triangles are split where the sky's light on them varies.
+    std::string lit_text(const Representation& representation, const Mesh& mesh) const {
+        if (!options_.sky || !options_.sky->shares || light::whole(mesh, *options_.sky->shares))
+            return textured_text(representation, options_);
+        auto split = light::split_for_sky(mesh, *options_.sky->shares);
+        if (!split)
+            fail(Status::Internal, "the sky's light on a mesh is that on another mesh");
+        Representation lit = representation;
+        lit.payload = std::make_shared<const Mesh>(std::move(split->mesh));
+        RepresentationOptions options = options_;
+        options.shown = shown_parts(options_.shown, split->sources);
+        return textured_text(lit, options);
     }
 
     std::string textured_text(const Representation& representation,

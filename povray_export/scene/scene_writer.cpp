@@ -136,7 +136,7 @@ private:
         wanted.needs = &needs_;
         wanted.pixels = static_cast<double>(view_.width) * view_.height;
         wanted.texels = renderer_.texels;
-        if (!sky_->find_light(cut_, wanted, job_.part(0, kBakePart)))
+        if (!sky_->find_light(cut_, wanted, pixels_, job_.part(0, kBakePart)))
             find_needs();
     }
 

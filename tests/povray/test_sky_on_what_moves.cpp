@@ -113,3 +113,55 @@ TEST_F(SkyOnSides, ASideIsLitByTheSkyThatItFacesWithoutRays) {
     EXPECT_GT(*std::max_element(reddish.begin(), reddish.end()), 3);
     EXPECT_LT(*std::min_element(reddish.begin(), reddish.end()), 1.0 / 3);
 }
+
+// A cube that was drawn as a box was as light on its sides as above.
+TEST_F(SkyOnSides, SidesOfABoxThatIsLargeInThePictureHaveLightOfTheirOwn) {
+    Primitive primitive;
+    primitive.half_size = {1, 1, 1};
+    const ObjectIndex box = builder.primitive(Kind::Box, primitive, {builder.matte({1, 1, 1})});
+    builder.place(box, at(0, 0, 1));
+    builder.place(builder.mesh(shapes::quad(40, 40)), at(-20, -20, -.01));
+    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+    const auto on_box = [&](bool large) {
+        SkyOcclusionOptions options;
+        options.sides_show = [large](const Bound&) { return large; };
+        Problems problems;
+        const SkyOcclusion light(builder.model, cut, options, problems, {});
+        for (size_t i = 0; i < cut.chosen.size(); ++i) {
+            if (cut.nodes[cut.chosen[i]].object == box)
+                return light.of(i);
+        }
+        return SkyLightPtr{};
+    };
+    ASSERT_TRUE(on_box(false));
+    EXPECT_FALSE(on_box(false)->shares);
+    EXPECT_NEAR(on_box(false)->factor, .5, .05);
+    const SkyLightPtr sides = on_box(true);
+    ASSERT_TRUE(sides && sides->shares);
+    const Mesh mesh = tessellate_box(primitive);
+    ASSERT_EQ(sides->shares->corners.size(), 3 * mesh.triangles.size());
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const double up = glm::normalize(area_vector(mesh, i)).z;
+        const double expected = up > .5 ? 1 : up < -.5 ? 0 : .5;
+        for (int corner = 0; corner < 3; ++corner)
+            EXPECT_NEAR(sides->share(i, corner, mesh.positions[mesh.triangles[i][corner]]),
+                        expected, .1);
+    }
+    ExportOptions options;
+    options.folder = own_scratch();
+    Problems problems;
+    scenes::write(builder.model, scenes::above(), options, problems);
+    std::string text;
+    for (const auto& entry : std::filesystem::directory_iterator(own_scratch() / "r"))
+        text += read_file(entry.path());
+    EXPECT_EQ(text.find("box{"), std::string::npos);  // it is as wide as the picture
+    View far = scenes::above();
+    far.camera.right *= 20;  // orthographic: 3 pixels
+    far.camera.up *= 20;
+    options.folder = own_scratch() / "far";
+    scenes::write(builder.model, far, options, problems);
+    text.clear();
+    for (const auto& entry : std::filesystem::directory_iterator(options.folder / "r"))
+        text += read_file(entry.path());
+    EXPECT_NE(text.find("box{"), std::string::npos);
+}
