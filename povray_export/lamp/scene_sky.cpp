@@ -22,10 +22,12 @@ SceneSky::SceneSky(const Model& model, const Shading& shading, bool lit,
 }
 
 void SceneSky::write(bool found_by_rays) {
+    const bool before = written_.written;
     written_ = write_sky(
         model_.world,
         {static_cast<size_t>(shading_.sky_lights), shading_.area_samples > 1, found_by_rays},
         folder_, problems_);
+    written_.written = written_.written || before;
 }
 
 bool SceneSky::find_light(const choose::Cut& cut, SkyOcclusionOptions options,

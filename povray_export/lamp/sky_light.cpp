@@ -67,9 +67,13 @@ uint8_t grade_of_share(double share) {
 }
 
 glm::dvec3 factors_of_tint(const SkyTint& tint, const glm::dvec3& color) {
-    const glm::dvec3 factors(std::exp2(tint.x), 1, std::exp2(tint.y));
+    const double whole = luminance(color);
+    const double green = luminance(glm::dvec3(0, color.y, 0));
+    glm::dvec3 factors(std::exp2(tint.x), 0, std::exp2(tint.y));
+    if (green > 0)  // the rest of the luminance
+        factors.y = std::max(0.0, (whole - luminance(color * factors)) / green);
     const double tinted = luminance(color * factors);
-    return tinted > 0 ? factors * (luminance(color) / tinted) : glm::dvec3(1.0);
+    return tinted > 0 ? factors * (whole / tinted) : glm::dvec3(1.0);
 }
 
 SkyTint SkyLight::tint(size_t triangle, int corner) const {

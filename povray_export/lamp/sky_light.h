@@ -18,11 +18,8 @@ inline constexpr int kSkyGrades = 32;
 double share_of_grade(uint8_t grade);
 uint8_t grade_of_share(double share);
 
-/// The hue of the sky's light, in octaves of red and blue beside green, in parts of its color.
+/// The hue of the sky's light, in octaves of red and blue beside luminance, in parts of its color.
 using SkyTint = glm::dvec2;
-/// The steps of a tint's octave for which textures are written.
-/// Taste: 4 % each; colors are blended between corners; more are more textures.
-inline constexpr double kTintGrades = 16;
 /// The factors of a tint on the parts of a light of `color`, whose luminance they leave.
 glm::dvec3 factors_of_tint(const SkyTint& tint, const glm::dvec3& color);
 

@@ -6,6 +6,7 @@
 #include "light/sky/joined_surface.h"
 #include "povray_export/lamp/corner_rays.h"
 #include "povray_export/lamp/placement_means.h"
+#include "povray_export/lamp/sky_grounds.h"
 #include "povray_export/lamp/sky_things.h"
 
 #include <algorithm>
@@ -38,6 +39,7 @@ public:
           bakes_(options.file, kSkyVersion),
           all_(model, cut, options.most_triangles, job),
           placements_(all_, options.uneven.get()),
+          grounds_(all_),
           surfaces_(model,
                     options.texels ? options.texels : std::make_shared<image::TexelCache>()) {}
 
@@ -84,7 +86,8 @@ private:
         const Representation* representation = nullptr;
         const SkyThing* placed = nullptr;          // null: alone
         const Representation* original = nullptr;  // the finest level; null: it is that
-        const MeansOfPlacements* means = nullptr;  // null: it stands once
+        const MeansOfPlacements* means = nullptr;  // null: it stands once, or moves
+        light::SkyHorizon horizon;                 // of what moves
         Hash key = 0;                              // where it is kept
         /// By triangle, 1: any of the things shows it. Empty: all count as shown.
         std::vector<uint8_t> seen;
@@ -94,6 +97,11 @@ private:
         std::shared_ptr<const light::SkyShares> found;  // of as many or fewer until it is baked
     };
 
+    static void hash_horizon(Hasher& hasher, const light::SkyHorizon& horizon) {
+        hasher.value(horizon.below).value(horizon.upright);
+        hasher.value(horizon.up.x).value(horizon.up.y).value(horizon.up.z);
+    }
+
     Hash key_of(const SkyThing& thing, bool once) const {
         Hasher hasher;
         const RepresentationSummary& summary = thing.representation->summary;
@@ -102,6 +110,8 @@ private:
         hasher.value(options_.uneven ? options_.uneven->hash() : 0);
         hasher.value(summary.hash).value(all_.finest_of(thing).summary.hash);
         hasher.value(summary.cost.triangles).value(thing.moves);
+        if (thing.moves)
+            hash_horizon(hasher, grounds_.horizon(thing));
         if (placed != nullptr) {
             hasher.value(all_.scene()).value(summary.max_error).value(all_.splits_of(*placed));
             hash_transform(hasher, placed->world);
@@ -138,7 +148,7 @@ private:
                 shares_of_[i] = want_shares(thing, once);
             if (shares_of_[i] != nullptr)
                 note_seen(i, *shares_of_[i]);
-            if (!once)
+            if (!once && !thing.moves)
                 means_of_[i] = placements_.want(thing);
             if (shares_of_[i] != nullptr)
                 shares_of_[i]->means = means_of_[i].first;
@@ -165,6 +175,8 @@ private:
             return &wanted;
         wanted.representation = thing.representation;
         wanted.placed = once ? &thing : nullptr;
+        if (thing.moves)
+            wanted.horizon = grounds_.horizon(thing);
         if (all_.finest_of(thing).summary.hash != thing.representation->summary.hash)
             wanted.original = &all_.finest_of(thing);
         wanted.seen.assign(triangles_of(*thing.representation), 0);
@@ -214,14 +226,9 @@ private:
     /// once another picture shows more those of all, so that many pictures do not begin anew.
     void find_shares(Hash key, WantedShares& wanted) {
         const light::SkyHorizon horizon = horizon_of(wanted);
-        wanted.key = Hasher()
-                         .value(key)
-                         .value(horizon.below)
-                         .value(horizon.upright)
-                         .value(horizon.up.x)
-                         .value(horizon.up.y)
-                         .value(horizon.up.z)
-                         .result();
+        Hasher hasher;
+        hash_horizon(hasher.value(key), horizon);
+        wanted.key = hasher.result();
         if (const auto bytes = bakes_.find(wanted.key)) {
             auto found = light::SkyShares::of_bytes(*bytes, triangles_of(*wanted.representation));
             if (found && fits(*wanted.representation, *found))
@@ -244,7 +251,7 @@ private:
     /// The sky below a thing alone.
     static light::SkyHorizon horizon_of(const WantedShares& wanted) {
         return wanted.placed == nullptr && wanted.means != nullptr ? wanted.means->found.horizon
-                                                                   : light::SkyHorizon{};
+                                                                   : wanted.horizon;
     }
 
     /// All that hides the sky, made when something is to be found.
@@ -346,7 +353,11 @@ private:
         bakes_.save();
     }
 
-    static PlacementShade even_shade(double share) { return {share, share, {}}; }
+    /// The share of what moves and has one for all of it, as of a ball.
+    double mean_of_mover(const SkyThing& thing) const {
+        const double below = grounds_.horizon(thing).below;
+        return options_.uneven ? options_.uneven->mean(below) : (1 + below) / 2;
+    }
 
     void light_all() {
         placements_.grade();
@@ -358,7 +369,9 @@ private:
             if (means != nullptr)
                 means_[i] = means->found.means[number].placed;
             if (shares_of_[i] == nullptr) {
-                if (means != nullptr)
+                if (all_.things()[i].moves && !all_.skipped(all_.things()[i]))
+                    means_[i] = mean_of_mover(all_.things()[i]);
+                if (means != nullptr || all_.things()[i].moves)
                     lights_[i] = even_sky_light(share_of_grade(grade_of_share(means_[i])));
                 continue;
             }
@@ -366,15 +379,10 @@ private:
             if (means == nullptr)
                 means_[i] = shares->mean;
             const Hash key = shares_of_[i]->key;
-            if (means == nullptr) {
-                lights_[i] = sky_light(key, shares, {}, {}, color);
-                continue;
-            }
-            PlacementShade around = means->shades[number];
-            if (all_.things()[i].moves)  // in steps, so that most frames have the same file
-                around = even_shade(share_of_grade(grade_of_share(around.middle)));
-            lights_[i] =
-                sky_light(key, shares, around, means->representation->summary.bound.box, color);
+            lights_[i] = means == nullptr
+                             ? sky_light(key, shares, {}, {}, color)
+                             : sky_light(key, shares, means->shades[number],
+                                         means->representation->summary.bound.box, color);
         }
         grade_means();
     }
@@ -391,7 +399,7 @@ private:
             std::vector<PlacementShade> means;
             means.reserve(numbers.size());
             for (const size_t i : numbers)
-                means.push_back(even_shade(means_[i]));
+                means.push_back({means_[i], means_[i], {}});
             means = graded(means);
             for (size_t i = 0; i < numbers.size(); ++i)
                 means_[numbers[i]] = means[i].share;
@@ -404,6 +412,7 @@ private:
     FindingsFile bakes_;
     SkyThings all_;
     PlacementMeans placements_;
+    SkyGrounds grounds_;
     light::SkySurfaces surfaces_;
     std::vector<light::SkyOccluder> occluders_;
     std::optional<light::SkyScene> around_;

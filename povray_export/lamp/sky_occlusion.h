@@ -50,8 +50,8 @@ struct SkyOcclusionOptions {
 /// which changes evenly over the thing.
 /// Boxes have the mean of their sides, or, where they are large in the picture, the light of each.
 /// Levels have the light of the outermost places near them of their finest level, and what stands in for a group
-/// that of all below it. What moves in an animation hides the sky from itself alone; what is around
-/// it, where it is now, hides the sky from it.
+/// that of all below it. What moves in an animation hides the sky from itself alone; where a
+/// ground lies below it, it sees no sky there.
 class SkyOcclusion {
 public:
     /// Where rays cannot be cast or there is too much, nothing is occluded, and a problem says so.

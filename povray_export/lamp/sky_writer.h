@@ -37,7 +37,7 @@ struct WrittenSky {
 
 /// Writes an environment's picture into `folder`/i when it is not there. A picture that cannot be
 /// decoded becomes a problem, and its world counts as its color. Without lights all of its light is
-/// uniform. Throws Error(Io).
+/// uniform, but for what rays find. Throws Error(Io).
 WrittenSky write_sky(const World& world, const SkySampling& sampling,
                      const std::filesystem::path& folder, Problems& problems);
 

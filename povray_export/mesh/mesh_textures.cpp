@@ -57,11 +57,15 @@ Key rounded(Key key, uint64_t step) {
     return out;
 }
 
-/// Another key for each grade of the sky's light: equal ones of different colors, which are as
+/// Another key for each grade of the sky's light, and for each tint: equal ones of different colors, which are as
 /// likely as a collision of hashes, only count as one.
 Key graded(Key key, uint32_t grade) {
     return key ^ (0x9e3779b97f4a7c15u * (uint64_t{grade} + 1));
 }
+
+// The largest steps of a tint.
+// Law: a signed byte holds them.
+constexpr int kMostTint = 127;
 
 /// A number for each tint; 0 for none.
 uint32_t number_of_tint(int8_t red, int8_t blue) {
@@ -113,8 +117,10 @@ MeshTextures::MeshTextures(const Model& model, const Representation& representat
         else
             slot.text = add(slot, pictures);
     }
-    if (corners)
+    if (corners) {
+        find_tint_step();
         find_corners(pictures);
+    }
 }
 
 size_t MeshTextures::of(size_t triangle, int corner) const {
@@ -330,9 +336,14 @@ MeshTextures::SkyGrade MeshTextures::sky_grade(size_t triangle, int corner) cons
             grade_of_share(weights.x * shares[0] + weights.y * shares[1] + weights.z * shares[2]);
         const SkyTint tint = weights.x * tints[0] + weights.y * tints[1] + weights.z * tints[2];
         // Taste: the eye sees fewer hues of what is dark.
-        const int coarser = out.share < kSkyGrades / 4 ? 4 : out.share < kSkyGrades / 2 ? 2 : 1;
+        const int dark = out.share < kSkyGrades / 4 ? 4 : out.share < kSkyGrades / 2 ? 2 : 1;
+        const int coarser = tint_step_ * dark;
+        if (coarser > kMostTint)
+            return out;
         const auto step = [coarser](double octaves) {
-            return static_cast<int8_t>(coarser * std::lround(kTintGrades * octaves / coarser));
+            const int most = kMostTint / coarser * coarser;
+            const auto steps = static_cast<int>(std::lround(light::kTintSteps * octaves / coarser));
+            return static_cast<int8_t>(std::clamp(coarser * steps, -most, most));
         };
         out.red = step(tint.x);
         out.blue = step(tint.y);
@@ -352,6 +363,24 @@ MeshTextures::SkyGrade MeshTextures::sky_grade(size_t triangle, int corner) cons
     }
     const geometry::OnTriangle on = geometry::closest_on_triangle(place, at[0], at[1], at[2]);
     return grade({1 - on.u - on.v, on.u, on.v});
+}
+
+/// Makes tints of the sky's light so coarse that they and its grades are few enough.
+void MeshTextures::find_tint_step() {
+    if (!sky_ || !sky_->shares || sky_->shares->tints.empty())
+        return;
+    for (std::unordered_set<uint32_t> distinct;; tint_step_ *= 2, distinct.clear()) {
+        for (size_t i = 0; i < shown_.triangles.size() && distinct.size() <= kMost; ++i) {
+            check_job_sometimes(i);
+            for (int corner = 0; corner < 3; ++corner) {
+                const SkyGrade grade = sky_grade(i, corner);
+                distinct.insert(number_of_tint(grade.red, grade.blue) << 8u | grade.share);
+            }
+        }
+        if (distinct.size() <= kMost || tint_step_ > kMostTint)
+            return;
+        job_.check();
+    }
 }
 
 /// The number of different colors, with their grades of the sky's light, once colors are rounded;
@@ -433,7 +462,7 @@ void MeshTextures::find_corners(PictureWriter& pictures) {
         if (lit) {
             slot.surface.sky = share_of_grade(grade.share);
             slot.surface.sky_hue =
-                factors_of_tint(SkyTint(grade.red, grade.blue) / kTintGrades, sky_->color);
+                factors_of_tint(SkyTint(grade.red, grade.blue) / light::kTintSteps, sky_->color);
         }
         if (plane < slot.planes.size()) {
             slot.surface.flat = true;

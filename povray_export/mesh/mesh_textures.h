@@ -17,7 +17,8 @@ namespace lodestone::povray {
 /// The materials of slots, times the colors of vertices where a material uses them: a texture for
 /// every distinct color. More than kMost colors are rounded, in display encoding, as little as it
 /// takes; rounding by 2/255 keeps a difference nobody sees. Bumps need a texture for every plane,
-/// and corners that see different shares of the sky one for every grade.
+/// and corners that see different shares of the sky one for every grade, and for every hue of an
+/// uneven one, which are as coarse as it takes.
 class MeshTextures {
 public:
     /// The most textures of one mesh.
@@ -82,6 +83,7 @@ private:
         int8_t blue = 0;  // of the tint
     };
     SkyGrade sky_grade(size_t triangle, int corner) const;
+    void find_tint_step();
     void find_corners(PictureWriter& pictures);
     size_t add(const TexturedSlot& slot, PictureWriter& pictures);
     void check_job_sometimes(size_t i) const;
@@ -91,6 +93,7 @@ private:
     const Mesh& shown_;  // what is left of it
     const Job& job_;
     SkyLightPtr sky_;
+    int tint_step_ = 1;  // the steps of tints that count as one
     std::vector<TexturedSlot> slots_;
     std::vector<uint16_t> slot_at_;  // place in slots_, by slot of the mesh
     std::unordered_map<std::string, size_t> known_;

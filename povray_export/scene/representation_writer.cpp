@@ -74,7 +74,9 @@ public:
     }
 
     std::string operator()(const Solid& solid) const {
-        if (options_.textures && options_.sky && options_.sky->shares) {
+        const glm::dvec3 half = solid.primitive.half_size;
+        const bool body = half.x > 0 && half.y > 0 && half.z > 0;
+        if (body && options_.textures && options_.sky && options_.sky->shares) {
             Representation lit = representation_;
             lit.payload = std::make_shared<const Mesh>(tessellated(representation_));
             lit.summary.kind = Kind::Mesh;

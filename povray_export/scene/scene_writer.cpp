@@ -118,6 +118,7 @@ private:
     void find_needs() {
         if (!lit() || shading_.bounces > 0)
             return;
+        needs_ = PictureNeeds();
         std::vector<Light> lights = sky().lights;
         lights.insert(lights.end(), model_.lights.begin(), model_.lights.end());
         needs_.find(model_, renderer_, cut_, view_, lights, job_);
@@ -200,29 +201,29 @@ private:
     /// Lets each use be drawn from a file.
     void add_files() {
         // The shadow rays to lamps of a point from which on it has one texture, in a thing or in the
-        // mean of the picture.
+        // mean of the picture, where a lamp counts as so many.
         // Taste: a larger value draws gloss better where lamps shine, and takes longer there.
         constexpr double kFewLampRays = 4;
+        constexpr double kRaysOfLamp = 1.1;  // Taste: as kFewLampRays
         const bool many = report_.lamps >= light::kManyLamps && !plan_.empty();
-        const double mean = many ? light::mean_lamp_rays(plan_, model_.lights) : 0;
+        const bool few = many && kRaysOfLamp * plan_.lights_each >= kFewLampRays;
         const std::vector<double> rays = lamp_rays(bounds_, plan_);
         for (size_t i = 0; i < uses_.size(); ++i) {
             OccurrenceUse& use = uses_[i];
             const auto& [textures, sky] = looks_[i];
             const Bound& bound = bounds_[i];
-            const Representation& representation = representation_of(use);
             const double pixel = pixels_.at(bound) / enlarged(use);
             const bool cut = use.position != kNoPosition;
             const bool shadows =
                 textures && lit() && shading_.bounces == 0 && use.in_place == 0 &&
                 ((cut && !needs_.seen(use.position)) || pixels_.only_shadows(bound));
             use.file = includes_.add(
-                representation,
+                representation_of(use),
                 {.textures = textures,
                  .uvs = options_.uvs,
                  .coarse_crowds = view_.pixel_error > 0,
                  .sky = textures && !shadows ? sky : nullptr,
-                 .few_textures = textures && many && std::max(rays[i], mean) >= kFewLampRays,
+                 .few_textures = textures && (few || (many && rays[i] >= kFewLampRays)),
                  .only_shadows = shadows},
                 outline_of(pixel),
                 cut ? needs_.triangles(use.position) : std::span<const uint8_t>{});

@@ -168,7 +168,14 @@ class World(unittest.TestCase):
         self.close(sun.color, (13.999, 11.116, 7.899), 0.004)
         self.close(sun.direction, (-0.41519, -0.76001, -0.5))
         self.assertNotIn("world_sky", codes)
-        sky.sun_disc = False
+        sky.sun_size = math.radians(45)  # a disk that reaches lower, through more air
+        _, (wide,), _, _ = self.taken()
+        for larger, small in zip(wide.color, sun.color):
+            self.assertTrue(0.5 * small < larger < small, (wide.color, sun.color))
+        sky.sun_size = math.radians(0.545)
+        sky.sun_elevation = math.radians(-3)  # it has set: no light shines up
+        self.assertEqual(self.taken()[1], [])
+        sky.sun_elevation, sky.sun_disc = math.radians(30), False
         self.assertEqual(self.taken()[1], [])
 
     def test_a_sky_is_drawn_as_blender_draws_it(self):
@@ -216,14 +223,23 @@ class World(unittest.TestCase):
                 kept.write_bytes(damaged)
                 self.assertEqual(self.taken(store)[2], [first])
             self.sky_texture(sun_elevation=0.4)
-            self.taken(store)
+            self.taken()  # before there is a folder
+            with unittest.mock.patch.object(drawn_sky, "_draw", side_effect=AssertionError):
+                self.taken(store)
             self.assertEqual(len(list(Path(store, drawn_sky.FOLDER).glob("*.exr"))), 2)
+            for damaged in ("[1e999, 0, 0]", f"[{10**400}, 0, 0]", "[1, 2]", "{}"):
+                end_session()
+                for file in Path(store, drawn_sky.FOLDER).glob("*.json"):
+                    file.write_text(damaged, "utf-8")
+                self.assertEqual(len(self.taken(store)[1]), 1)
 
     def test_where_blender_cannot_draw_a_sky_it_is_one_color_and_named(self):
         from lodestone.bridge.world import drawn_sky
+        from lodestone.core.session.addon_session import end_session
 
         self.sky_texture(sun_elevation=math.radians(45), air_density=1.5)
         for program in ("/nowhere/blender", "/bin/true", "/bin/false"):
+            end_session()
             fake = SimpleNamespace(
                 app=SimpleNamespace(binary_path=program, version_string=program), types=bpy.types
             )
@@ -231,6 +247,9 @@ class World(unittest.TestCase):
                 _, (sun,), pictures, codes = self.taken()
             self.assertIn("world_sky", codes, program)
             self.close(sun.color, (146.51, 119.84, 92.14), 1e-4)
+            with unittest.mock.patch.object(drawn_sky, "bpy", fake):
+                with unittest.mock.patch.object(drawn_sky, "_draw", side_effect=AssertionError):
+                    self.taken()  # it is not tried again
 
     def test_unknown_nodes_are_one_named_color(self):
         noise = self.tree.nodes.new("ShaderNodeTexNoise")

@@ -13,7 +13,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 import blender_scenes as scenes  # noqa: E402
 import window_steps as steps  # noqa: E402
 
-LONGER_S = 2 * (0.02, 0.05, 0.1, 0.2, 0.5)  # a call of the engine lies otherwise beside each
+LONGER_S = 2 * (0.02, 0.05, 0.1, 0.2, 0.3)  # a call of the engine lies otherwise beside each
 _begins = threading.Event()  # the render has come as far as where it calls the engine next
 
 

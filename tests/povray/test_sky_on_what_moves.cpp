@@ -61,7 +61,7 @@ TEST_F(SkyOnWhatMoves, WhatMovesHidesTheSkyFromItselfAlone) {
 }
 
 // Boxes that move were lit from below, through the ground that they stand on.
-TEST_F(SkyOnWhatMoves, WhatIsAroundHidesTheSkyFromWhatMoves) {
+TEST_F(SkyOnWhatMoves, AGroundHidesTheSkyBelowWhatMoves) {
     Primitive primitive;
     primitive.half_size = {.5, .5, .5};
     const ObjectIndex solid = builder.primitive(Kind::Box, primitive, {builder.matte({1, 1, 1})});
@@ -78,6 +78,18 @@ TEST_F(SkyOnWhatMoves, WhatIsAroundHidesTheSkyFromWhatMoves) {
     // Of six sides the upper one sees all of the sky, four see half of it and one none.
     EXPECT_NEAR(on_ground.at(solid), .5, .05);
     EXPECT_NEAR(on_ground.at(box), .5, .05);
+}
+
+TEST_F(SkyOnWhatMoves, OnlyWhatIsWiderAndBelowIsAGround) {
+    const ObjectIndex box = builder.mesh(shapes::box({-1, -1, -1}, {1, 1, 1}));
+    builder.model.objects[box].deforms = true;
+    builder.place(box, at(0, 0, 5));
+    builder.place(builder.mesh(shapes::quad(5, 5)), at(-2.5, -2.5, 3));  // a table
+    builder.place(builder.mesh(shapes::quad(50, 50)), at(-25, -25, 9));  // a roof
+    builder.place(builder.mesh(shapes::quad(51, 50)), at(100, -25, 0));  // beside it
+    EXPECT_NEAR(means().at(box), 1, .02);
+    builder.place(builder.mesh(shapes::quad(52, 50)), at(-25, -25, -90));
+    EXPECT_NEAR(means().at(box), .5, .05);
 }
 
 // A sky of two sides lit everything by 24 suns, each a ray at every point.

@@ -20,6 +20,7 @@ from ..core.native import lodestone_native as native
 from ..core.printable_text import sentence, valid
 from ..core.problems import Problems
 from ..core.session.addon_session import addon_session
+from . import whole_panels
 
 
 class Request:
@@ -69,6 +70,10 @@ class LODESTONE_RE_extract(bpy.types.RenderEngine):
     bl_use_preview = False
 
     def render(self, depsgraph):
+        with whole_panels.engine_works():
+            self._read(depsgraph)
+
+    def _read(self, depsgraph):
         request = addon_session().part(ExtractState).request
         if request is None or request.extraction is not None or request.error is not None:
             return  # further view layers: the first one counts

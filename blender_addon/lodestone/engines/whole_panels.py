@@ -15,7 +15,9 @@ import bpy
 
 from ..core.session.addon_session import addon_session
 
-_WHOLE_S = 5.0  # Law: longer than any panel takes to draw
+# Taste: longer than panels take to draw, and not felt where a render never says that it ended.
+_WHOLE_S = 0.5
+_ENGINES = {"LODESTONE_POVRAY", "LODESTONE_EXTRACT"}
 
 
 class _Turns:
@@ -53,7 +55,7 @@ def engine_works():
 
 @bpy.app.handlers.persistent
 def _on_begin(rendered, *_):
-    if rendered.render.engine == "LODESTONE_POVRAY":
+    if rendered.render.engine in _ENGINES:
         _turns().lengthen()
 
 
@@ -62,4 +64,5 @@ def _on_end(*_):
     _turns().close()
 
 
-HANDLERS = (("render_init", _on_begin), ("render_complete", _on_end), ("render_cancel", _on_end))
+_ENDS = ("render_complete", "render_cancel", "load_pre")
+HANDLERS = (("render_init", _on_begin), *((name, _on_end) for name in _ENDS))

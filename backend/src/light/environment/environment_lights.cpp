@@ -27,6 +27,9 @@ constexpr double kKeep = 1e-3;
 // The size of a peak, in radians, that is one sun however bright it is.
 // Taste: four texels across; a smaller value makes several suns of one.
 constexpr double kSunSize = 0.2;
+// The suns of peaks that are wider, or apart, at least.
+// Taste: fewer join lamps that are far apart.
+constexpr size_t kFewestApart = 4;
 
 struct SkyRegion {
     int left, top, right, bottom;  // texels; right and bottom are outside
@@ -42,10 +45,40 @@ glm::dvec2 extent(const EnvironmentSky& sky, const SkyRegion& region) {
             kPi * (region.bottom - region.top) / sky.height()};
 }
 
+/// How wide the light of a region is, in radians: as a disk that spreads as far, wherever the
+/// picture's edges are. 0 of what is no wider than a texel.
+double width_of_light(const EnvironmentSky& sky, const SkyRegion& region) {
+    glm::dvec3 middle(0.0);
+    double power = 0;
+    const auto visit = [&](const auto& add) {
+        for (int y = region.top; y < region.bottom; ++y) {
+            for (int x = region.left; x < region.right; ++x) {
+                const double own = luminance(sky.at(x, y).above());
+                if (own > 0)
+                    add(sky.at(x, y).direction, own);
+            }
+        }
+    };
+    visit([&](const glm::dvec3& direction, double own) {
+        middle += own * direction;
+        power += own;
+    });
+    if (!(glm::length(middle) > 0))
+        return power > 0 ? 2 * kPi : 0;
+    middle = glm::normalize(middle);
+    double spread = 0;  // times the angle squared
+    visit([&](const glm::dvec3& direction, double own) {
+        const double angle = std::acos(limited(glm::dot(middle, direction), -1, 1));
+        spread += own * angle * angle;
+    });
+    // Law: a disk's mean squared distance from its middle is half of its radius squared.
+    return std::max(0.0, 2 * std::sqrt(2 * spread / power) - kPi / sky.height());
+}
+
 /// How wrong one sun for all of the region is: the power it sends, times its size squared.
 double badness(const EnvironmentSky& sky, const SkyRegion& region, double least_size) {
     const glm::dvec2 size = extent(sky, region);
-    if (!region.divisible() || glm::dot(size, size) < least_size * least_size)
+    if (!region.divisible() || (least_size > 0 && width_of_light(sky, region) < least_size))
         return -1;
     return region.brightness * glm::dot(size, size);
 }
@@ -234,22 +267,6 @@ std::vector<EnvironmentLight> lights_of(const EnvironmentSky& sky, size_t count,
     return out;
 }
 
-/// How wide the peak is that a light stands for, in radians: as a disk that spreads as far. 0 of one
-/// that is no wider than a texel.
-double width_of_peak(const EnvironmentSky& sky, const EnvironmentLight& light) {
-    double power = 0;
-    double spread = 0;  // times the angle squared
-    for (const SkyTexel& texel : sky.texels()) {
-        const double own = std::max(0.0, luminance(texel.above()));
-        const double angle = std::acos(limited(-glm::dot(light.direction, texel.direction), -1, 1));
-        power += own;
-        spread += own * angle * angle;
-    }
-    // Law: a disk's mean squared distance from its middle is half of its radius squared.
-    const double radius = power > 0 ? std::sqrt(2 * spread / power) : 0;
-    return std::max(0.0, 2 * radius - kPi / sky.height());
-}
-
 void drop_dark(std::vector<EnvironmentLight>& lights) {
     std::erase_if(
         lights, [](const EnvironmentLight& light) { return light.irradiance == glm::dvec3(0.0); });
@@ -286,14 +303,16 @@ EnvironmentLights environment_peaks(const World& world, size_t count) {
     }
     out.uneven = std::make_shared<UnevenSky>(parts, sky.width(), sky.height(), sky.to_picture());
     out.ambient = out.uneven->color();
-    // Each light stands for as much as one of all the sky's would.
-    if (all > 0)
-        out.lights =
-            lights_of(sky, static_cast<size_t>(std::ceil(static_cast<double>(count) * peaks / all)),
-                      kSunSize);
+    if (!(peaks > 0))
+        return out;
+    // Each light stands for as much as one of all the sky's would; peaks far apart are several.
+    const double width = width_of_light(sky, {0, 0, sky.width(), sky.height()});
+    const size_t least = width > kSunSize ? std::min(kFewestApart, count) : 0;
+    const double wanted = std::ceil(static_cast<double>(count) * peaks / all);
+    out.lights = lights_of(sky, std::max(static_cast<size_t>(wanted), least), kSunSize);
     drop_dark(out.lights);
     if (out.lights.size() == 1)  // the shadows of several blur one another
-        out.lights[0].angle = width_of_peak(sky, out.lights[0]);
+        out.lights[0].angle = width;
     return out;
 }
 

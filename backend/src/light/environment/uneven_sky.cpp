@@ -156,4 +156,11 @@ glm::dvec3 UnevenSky::received(const glm::dvec3& normal) const {
     return glm::mix(in_row(up), in_row(up + 1), row - up);
 }
 
+double UnevenSky::mean(double below) const {
+    double sum = 0;
+    for (size_t i = 0; i < by_height_.size(); ++i)
+        sum += share_of(glm::dvec3(by_height_[i])) * (2 * i < by_height_.size() ? below : 1);
+    return by_height_.empty() ? 0 : sum / static_cast<double>(by_height_.size());
+}
+
 }  // namespace lodestone::light

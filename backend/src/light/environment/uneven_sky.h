@@ -38,6 +38,9 @@ public:
     /// The light that a surface facing there receives with nothing around it (unit, world), in parts
     /// of what a sky of the color gives.
     glm::dvec3 received(const glm::dvec3& normal) const;
+    /// The share of the light that surfaces facing any way receive in the mean, of the sky above and
+    /// of a part of that below.
+    double mean(double below) const;
     /// The luminance of parts of the color, in parts of its luminance.
     double share_of(const glm::dvec3& parts) const {
         return weights_.x * parts.x + weights_.y * parts.y + weights_.z * parts.z;

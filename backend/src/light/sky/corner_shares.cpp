@@ -144,6 +144,7 @@ void CornerShares::finish(std::span<const TriangleShares> shares, SkyShares& out
         }
     }
     out.mean = area > 0 ? seen / area : (all_area > 0 ? all_seen / all_area : 1);
+    out.mean = std::min(1.0, out.mean);  // rays may meet more of an uneven sky than there is
     out.corners.reserve(group_of_.size());
     for (const uint32_t index : group_of_) {
         const GroupShares& group = groups_[index];
@@ -151,8 +152,9 @@ void CornerShares::finish(std::span<const TriangleShares> shares, SkyShares& out
         out.corners.push_back(share_byte(group.opaque ? share : std::min(1.0, lighter * share)));
         if (sky_ != nullptr && !sky_->one_hue()) {
             const glm::dvec3 color = group.uneven.likely();
-            out.tints.push_back(tint_byte(color.x / color.y));
-            out.tints.push_back(tint_byte(color.z / color.y));
+            const double bright = sky_->share_of(color);
+            out.tints.push_back(tint_byte(color.x, bright));
+            out.tints.push_back(tint_byte(color.z, bright));
         }
     }
 }

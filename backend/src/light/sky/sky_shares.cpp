@@ -48,12 +48,12 @@ double share_of_byte(uint8_t byte) {
     return root * root;
 }
 
-uint8_t tint_byte(double ratio) {
+uint8_t tint_byte(double part, double luminance) {
     constexpr double kNone = 128;  // Law: the middle of a byte
-    if (!(ratio > 0) || !std::isfinite(ratio))
+    if (!(luminance > 0) || !std::isfinite(part / luminance))
         return static_cast<uint8_t>(kNone);
-    return static_cast<uint8_t>(
-        std::lround(limited(kNone + kTintSteps * std::log2(ratio), 0, kShareSteps)));
+    const double octaves = part > 0 ? std::log2(part / luminance) : -kInfinity;
+    return static_cast<uint8_t>(std::lround(limited(kNone + kTintSteps * octaves, 0, kShareSteps)));
 }
 
 double octaves_of_tint(uint8_t byte) {

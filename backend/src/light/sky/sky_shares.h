@@ -27,8 +27,8 @@ double share_of_byte(uint8_t byte);
 /// The steps of a tint's octave in SkyShares::tints.
 /// Taste: 4 % each; a larger value has no room for deeper colors.
 inline constexpr double kTintSteps = 16;
-/// The byte of a part of a color beside its green part, and the octaves of such a byte.
-uint8_t tint_byte(double ratio);
+/// The byte of a part of a color beside its luminance, and the octaves of such a byte.
+uint8_t tint_byte(double part, double luminance);
 double octaves_of_tint(uint8_t byte);
 
 /// The sky that a surface sees, 0...1 of that of an open plane.
@@ -37,8 +37,8 @@ struct SkyShares {
     std::vector<std::vector<geometry::WeldedEdge>> splits;
     uint32_t long_rounds = 0;      // of the splits, the first: those of long edges
     std::vector<uint8_t> corners;  // 3 a triangle of the split mesh
-    /// The hue of an uneven sky's light, 2 a corner: how much more red and blue than green of the
-    /// sky's color arrives. Empty: it is one hue.
+    /// The hue of an uneven sky's light, 2 a corner: how much more red and blue of the sky's
+    /// color arrives than luminance. Empty: it is one hue.
     std::vector<uint8_t> tints;
     double mean = 1;    // of the whole surface
     uint32_t rays = 0;  // that told the share of a corner, about

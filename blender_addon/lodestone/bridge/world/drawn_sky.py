@@ -21,9 +21,9 @@ from .sky_texture import Color, MeanSky, Sky, SkySun, direction_to_sun, has_sun
 
 FOLDER = "skies"  # in the folder of levels
 _SCRIPT = Path(__file__).with_name("sky_in_blender.py")
-_LONGEST_S = 60.0  # Taste: a hundred times what it takes
+_LONGEST_S = 20.0  # Taste: thirty times what it takes; meanwhile nothing can be stopped
 _MOST_KEPT = 32  # Taste: skies in a folder, 100 kB each, or in memory
-_VERSION = 1  # of what is kept
+_VERSION = 2  # of what is kept
 
 
 class _Pictures(NamedTuple):
@@ -31,13 +31,14 @@ class _Pictures(NamedTuple):
     height: int
     pixels: array  # [height][width][4], lowest row first
     sun: Color
+    files: dict[str, bytes]  # by name, as they are kept
 
 
 class DrawnSkies:
     """Those that were drawn; part of the session."""
 
     def __init__(self) -> None:
-        self.pictures: dict[str, _Pictures] = {}  # by what they were drawn from
+        self.pictures: dict[str, _Pictures | None] = {}  # by key; None: it cannot be drawn
 
 
 class DrawnSky(Sky):
@@ -49,13 +50,13 @@ class DrawnSky(Sky):
         self._pictures, self.sun = pictures, sun
 
     def color(self, x: float, y: float, z: float) -> Color:
-        width, height, pixels, _ = self._pictures
+        pictures = self._pictures
         u = 0.5 - math.atan2(y, x) / (2.0 * math.pi)
         v = 0.5 + math.atan2(z, math.hypot(x, y)) / math.pi
-        column = min(width - 1, max(0, int(u * width)))
-        row = min(height - 1, max(0, int(v * height)))
-        at = 4 * (row * width + column)
-        return (pixels[at], pixels[at + 1], pixels[at + 2])
+        column = min(pictures.width - 1, max(0, int(u * pictures.width)))
+        row = min(pictures.height - 1, max(0, int(v * pictures.height)))
+        at = 4 * (row * pictures.width + column)
+        return (pictures.pixels[at], pictures.pixels[at + 1], pictures.pixels[at + 2])
 
 
 def drawn_sky(node: Any, width: int, height: int, folder: str) -> Sky:
@@ -65,17 +66,17 @@ def drawn_sky(node: Any, width: int, height: int, folder: str) -> Sky:
     told = json.dumps([_VERSION, bpy.app.version_string, width, height, values], sort_keys=True)
     key = hashlib.sha256(told.encode()).hexdigest()[:32]
     drawn = addon_session().part(DrawnSkies).pictures
+    kept = Path(folder) / FOLDER if folder else None
     if key not in drawn:
-        found = _from_folder(Path(folder) / FOLDER, key) if folder else None
-        found = found or _draw(
-            values, width, height, Path(folder) / FOLDER if folder else None, key
-        )
-        if found is None:
-            return MeanSky(node)
         while len(drawn) >= _MOST_KEPT:
             del drawn[next(iter(drawn))]
-        drawn[key] = found
+        found = _from_folder(kept, key) if kept is not None else None
+        drawn[key] = found or _draw(values, width, height, key)
     pictures = drawn[key]
+    if pictures is None:
+        return MeanSky(node)
+    if kept is not None and kept.parent.is_dir():
+        _keep(pictures.files, kept)
     sun = None
     if has_sun(node) and max(pictures.sun) > 0.0:
         sun = SkySun(direction_to_sun(node), pictures.sun, node.sun_size)
@@ -94,9 +95,7 @@ def _values(node: Any) -> dict[str, Any]:
     return found
 
 
-def _draw(
-    values: dict[str, Any], width: int, height: int, kept: Path | None, key: str
-) -> _Pictures | None:
+def _draw(values: dict[str, Any], width: int, height: int, key: str) -> _Pictures | None:
     with tempfile.TemporaryDirectory(prefix="lodestone-sky-") as work:
         sky, sun = Path(work) / f"{key}.exr", Path(work) / f"{key}.json"
         job = {"node": values, "width": width, "height": height, "sky": str(sky), "sun": str(sun)}
@@ -114,38 +113,47 @@ def _draw(
             )
         except (OSError, ValueError, subprocess.SubprocessError):
             return None
-        found = _from_folder(Path(work), key)
-        if found is not None and kept is not None:
-            _keep((sky, sun), kept)
-        return found
+        return _from_folder(Path(work), key)
 
 
 def _from_folder(folder: Path, key: str) -> _Pictures | None:
     """None where there is none, or not a whole one."""
+    names = (f"{key}.json", f"{key}.exr")
     try:
-        sun = json.loads((folder / f"{key}.json").read_text("utf-8"))
-        red, green, blue = (float(value) for value in sun)
-        image = native.image_read(str(folder / f"{key}.exr"), bottom_up=True)
-    except (OSError, ValueError, TypeError, native.LodestoneError):
+        files = {name: (folder / name).read_bytes() for name in names}
+        red, green, blue = (float(value) for value in json.loads(files[names[0]]))
+        image = native.image_read(str(folder / names[1]), bottom_up=True)
+    except (OSError, ValueError, TypeError, ArithmeticError, native.LodestoneError):
         return None
     if not all(math.isfinite(value) for value in (red, green, blue)):
         return None
-    return _Pictures(image.width, image.height, image.pixels, (red, green, blue))
+    return _Pictures(image.width, image.height, image.pixels, (red, green, blue), files)
 
 
-def _keep(files: tuple[Path, ...], folder: Path) -> None:
-    """Copies files into a folder of a folder of levels that is there, and lets the oldest ones go.
-    What cannot be kept is drawn again the next time."""
-    if not folder.parent.is_dir():
+def _keep(files: dict[str, bytes], folder: Path) -> None:
+    """Writes files into a folder where they are missing, and lets the oldest ones go. What cannot
+    be kept is drawn again the next time."""
+    missing = {name: data for name, data in files.items() if not _is_there(folder / name, data)}
+    if not missing:
         return
+    part = folder / f".{os.getpid()}.part"
     try:
         folder.mkdir(exist_ok=True)
-        for file in files:
-            part = folder / f".{os.getpid()}-{file.name}"
-            part.write_bytes(file.read_bytes())
-            os.replace(part, folder / file.name)
+        for name, data in missing.items():
+            part.write_bytes(data)
+            os.replace(part, folder / name)
         old = sorted(folder.glob("[0-9a-f]*.*"), key=lambda file: file.stat().st_mtime)
         for file in old[: -2 * _MOST_KEPT]:
             file.unlink(missing_ok=True)
     except OSError:
-        pass
+        try:
+            part.unlink(missing_ok=True)
+        except OSError:
+            pass
+
+
+def _is_there(path: Path, data: bytes) -> bool:
+    try:
+        return path.stat().st_size == len(data)
+    except OSError:
+        return False

@@ -20,6 +20,7 @@ from mathutils import Vector
 _AROUND_SUN = 1.5  # Taste: the width of its picture, in suns
 _SUN_PIXELS = 32  # Taste: more tell the disk's edge finer
 _SUN_SAMPLES = 16  # Taste: as _SUN_PIXELS
+_SKY_SAMPLES = 4  # Taste: more tell the mean of a pixel better
 
 
 def _sky_node(values: dict[str, Any], world: Any) -> Any:
@@ -50,7 +51,7 @@ def _scene(world: Any) -> Any:
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.use_denoising = scene.cycles.use_adaptive_sampling = False
-    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
+    scene.cycles.pixel_filter_type = "BOX"
     scene.render.resolution_percentage = 100
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
@@ -62,29 +63,40 @@ def _draw_sky(scene: Any, given: dict[str, Any]) -> None:
     camera.data.type = "PANO"
     camera.data.cycles.panorama_type = "EQUIRECTANGULAR"
     camera.rotation_euler = (math.pi / 2, 0.0, -math.pi / 2)  # its middle looks along X
-    _rendered(scene, given["sky"], given["width"], given["height"], 1)
+    _rendered(scene, given["sky"], given["width"], given["height"], _SKY_SAMPLES)
 
 
-def _draw_sun(scene: Any, sky: Any, given: dict[str, Any]) -> list[float]:
-    """The irradiance of its sun, which outshines the sky around it by far."""
+def _sun_without_sky(scene: Any, sky: Any, picture: str) -> list[float]:
+    """The irradiance of its sun; the sky before and around it does not count."""
     high, turn = sky.sun_elevation, sky.sun_rotation
+    if not high + sky.sun_size / 2 > 0.0:  # it has set
+        return [0.0, 0.0, 0.0]
     flat = math.cos(high)
     to_sun = Vector((flat * math.sin(turn), flat * math.cos(turn), math.sin(high)))
     camera = scene.camera
     camera.data.type = "PERSP"
     camera.data.angle = min(math.radians(170), max(1e-3, _AROUND_SUN * sky.sun_size))
     camera.rotation_euler = to_sun.to_track_quat("-Z", "Y").to_euler()
-    picture = f"{given['sun']}.exr"
+    sky.sun_disc = True
+    with_disc = _received(scene, picture)
+    sky.sun_disc = False
+    return [max(0.0, both - rest) for both, rest in zip(with_disc, _received(scene, picture))]
+
+
+def _received(scene: Any, picture: str) -> list[float]:
+    """The irradiance of all that the camera sees, on what faces it."""
     _rendered(scene, picture, _SUN_PIXELS, _SUN_PIXELS, _SUN_SAMPLES)
-    pixels = bpy.data.images.load(picture).pixels[:]
+    image = bpy.data.images.load(picture)
+    pixels = image.pixels[:]
+    bpy.data.images.remove(image)
     Path(picture).unlink()
-    step = 2.0 * math.tan(camera.data.angle / 2) / _SUN_PIXELS
+    step = 2.0 * math.tan(scene.camera.data.angle / 2) / _SUN_PIXELS
     sums = [0.0, 0.0, 0.0]
     for row in range(_SUN_PIXELS):
         for column in range(_SUN_PIXELS):
             x, y = ((at + 0.5 - _SUN_PIXELS / 2) * step for at in (column, row))
             square = 1.0 + x * x + y * y
-            # Law: the solid angle of a pixel, times the cosine to the sun
+            # Law: the solid angle of a pixel, times the cosine to the middle
             weight = step * step / (square * square)
             at = 4 * (row * _SUN_PIXELS + column)
             for channel in range(3):
@@ -100,7 +112,7 @@ def main() -> None:
     sun = [0.0, 0.0, 0.0]
     if sky.sky_type not in {"PREETHAM", "HOSEK_WILKIE"}:
         if sky.sun_disc:
-            sun = _draw_sun(scene, sky, given)
+            sun = _sun_without_sky(scene, sky, f"{given['sun']}.exr")
         sky.sun_disc = False
     _draw_sky(scene, given)
     Path(given["sun"]).write_text(json.dumps(sun), "utf-8")

@@ -115,6 +115,38 @@ TEST(EnvironmentPeaks, AWidePeakIsAWideLight) {
     EXPECT_NEAR(sky.lights[0].angle, 0.12, 0.05);  // but for a texel
 }
 
+// Two lamps far apart were one light halfway between them.
+TEST(EnvironmentPeaks, PeaksFarApartAreSeveralLights) {
+    const glm::dvec3 ways[] = {{0, 1, 0}, glm::normalize(glm::dvec3(1, -1, 1))};
+    const EnvironmentLights sky = environment_peaks(world_of([&](const glm::dvec3& d) {
+                                                        const bool lamp =
+                                                            glm::dot(d, ways[0]) > std::cos(0.04) ||
+                                                            glm::dot(d, ways[1]) > std::cos(0.04);
+                                                        return glm::dvec3(lamp ? 20 : 1);
+                                                    }),
+                                                    24);
+    ASSERT_GE(sky.lights.size(), 2u);
+    bool lit[2] = {false, false};
+    for (const light::EnvironmentLight& light : sky.lights) {
+        const bool second = glm::dot(light.direction, ways[1]) < glm::dot(light.direction, ways[0]);
+        EXPECT_GT(-glm::dot(light.direction, ways[second ? 1 : 0]), std::cos(0.05));
+        lit[second ? 1 : 0] = true;
+    }
+    EXPECT_TRUE(lit[0] && lit[1]);
+}
+
+TEST(EnvironmentPeaks, ASunAcrossThePicturesEdgeIsOne) {
+    const glm::dvec3 sun = glm::normalize(glm::dvec3(-1, 0, 0.3));
+    const EnvironmentLights sky =
+        environment_peaks(world_of([&](const glm::dvec3& d) {
+                              return glm::dvec3(glm::dot(d, sun) > std::cos(0.06) ? 4000 : 1);
+                          }),
+                          24);
+    ASSERT_EQ(sky.lights.size(), 1u);
+    EXPECT_GT(-glm::dot(sky.lights[0].direction, sun), std::cos(0.02));
+    EXPECT_LT(sky.lights[0].angle, 0.15);
+}
+
 TEST(EnvironmentPeaks, TurningThePictureTurnsTheSky) {
     World world = world_of([](const glm::dvec3& d) {
         return glm::dvec3(d.x > 0.5 ? 4.0 : d.x < -0.5 ? 1.0 : 2.0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the light that surfaces have of a sky that is not equally bright everywhere.
 #include "backend/light/sky/sky_places.h"
+#include "base/color.h"
 #include "light/environment/environment_sky.h"
 #include "light/sky/sky_means.h"
 
@@ -102,10 +103,11 @@ TEST_F(SharesOfUnevenSkies, EachSideHasTheHueOfWhereItFaces) {
     ASSERT_EQ(found.tints.size(), 2 * found.corners.size());
     for (size_t i = 0; i < found.corners.size(); ++i) {
         const glm::dvec3 up = glm::normalize(area_vector(box, i / 3));
-        // Beside the mean of the ground: as much red as (1 - 2/3 x) / (1 + 2/3 x).
-        const double expected = std::log2((1 - 2.0 / 3 * up.x) / (1 + 2.0 / 3 * up.x));
-        EXPECT_NEAR(octaves_of_tint(found.tints[2 * i]), expected, 0.2);
-        EXPECT_EQ(octaves_of_tint(found.tints[2 * i + 1]), 0);
+        const double red = 1 - 2.0 / 3 * up.x;
+        const double blue = 1 + 2.0 / 3 * up.x;
+        const double bright = luminance(glm::dvec3(red, blue, blue));
+        EXPECT_NEAR(octaves_of_tint(found.tints[2 * i]), std::log2(red / bright), 0.2);
+        EXPECT_NEAR(octaves_of_tint(found.tints[2 * i + 1]), std::log2(blue / bright), 0.2);
     }
     const auto again = SkyShares::of_bytes(found.bytes(), box.triangles.size());
     ASSERT_TRUE(again);
@@ -114,6 +116,37 @@ TEST_F(SharesOfUnevenSkies, EachSideHasTheHueOfWhereItFaces) {
     std::string damaged = found.bytes();
     damaged.resize(damaged.size() - 3);
     EXPECT_FALSE(SkyShares::of_bytes(damaged, box.triangles.size()));
+}
+
+TEST(SkyTints, PartsThatDoNotArriveAreTheSmallest) {
+    EXPECT_EQ(octaves_of_tint(tint_byte(1, 1)), 0);
+    EXPECT_EQ(octaves_of_tint(tint_byte(2, 1)), 1);
+    EXPECT_EQ(octaves_of_tint(tint_byte(0, 1)), -8);
+    EXPECT_EQ(octaves_of_tint(tint_byte(1, 0)), 0);  // black
+    EXPECT_EQ(octaves_of_tint(tint_byte(kInfinity, 1)), 0);
+}
+
+// Open ground under a sky that is black below had a mean of 1.001, which was refused when it was
+// read: it was found anew for every picture.
+TEST_F(SharesOfUnevenSkies, OpenGroundHasAMeanOfAtMostOneAndIsKept) {
+    const ObjectIndex ground = builder.mesh(shapes::quad(4, 4));
+    std::vector<SkyPart> parts;
+    for (int y = 0; y < 64; ++y) {
+        const double solid_angle =
+            (std::cos(kPi * y / 64) - std::cos(kPi * (y + 1) / 64)) * 2 * kPi / 128;
+        for (int x = 0; x < 128; ++x)
+            parts.push_back({equirectangular_direction((x + 0.5) / 128, 1 - (y + 0.5) / 64),
+                             glm::dvec3(y < 32 ? 1.0 : 0.0), solid_angle});
+    }
+    const UnevenSky above(parts, 128, 64, glm::dmat3(1.0));
+    const SkyPlace place(*this, {{ground, {}}});
+    SkyRequest request{place.surfaces.of(finest(ground)), {}, &*place.scene, 0, 256, 0};
+    request.uneven = &above;
+    const SkyShares found = sky_shares(request, {});
+    EXPECT_NEAR(found.mean, 1, 0.01);
+    EXPECT_TRUE(SkyShares::of_bytes(found.bytes(), 2));
+    EXPECT_NEAR(above.mean(0), 0.5, 0.01);
+    EXPECT_NEAR(above.mean(1), 0.5, 0.01);
 }
 
 TEST_F(SharesOfUnevenSkies, WhereTheSkyIsBlackNothingCountsAsInside) {

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "povray_export/lamp/sky_grounds.h"
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lodestone::povray {
+namespace {
+
+// The things that count as grounds.
+// Taste: a larger value finds smaller ones, for a test of each thing that moves.
+constexpr size_t kMostGrounds = 64;
+// The widths of a thing that a ground below it has at least.
+// Taste: a smaller value takes tables for grounds.
+constexpr double kWider = 3;
+// The cosine to the vertical from which on an axis of a thing is up.
+// Law: at 45 degrees the next one is as near.
+constexpr double kUpright = 0.70;
+
+double width_of(const Box3& box) {
+    return std::min(box.size().x, box.size().y);
+}
+
+}  // namespace
+
+SkyGrounds::SkyGrounds(const SkyThings& all) {
+    for (const SkyLeaf& leaf : all.leaves()) {
+        const Box3 box = transformed(all.finest_of(leaf).summary.bound, leaf.world).box;
+        if (leaf.hides && !box.empty() && std::isfinite(width_of(box)))
+            grounds_.push_back(box);
+    }
+    const auto wider = [](const Box3& a, const Box3& b) { return width_of(a) > width_of(b); };
+    const size_t kept = std::min(grounds_.size(), kMostGrounds);
+    std::partial_sort(grounds_.begin(), grounds_.begin() + static_cast<std::ptrdiff_t>(kept),
+                      grounds_.end(), wider);
+    grounds_.resize(kept);
+}
+
+light::SkyHorizon SkyGrounds::horizon(const SkyThing& thing) const {
+    const glm::dvec3 up = glm::transpose(thing.world.linear) * glm::dvec3(0.0, 0.0, 1.0);
+    const double length = glm::length(up);
+    const Box3 box = transformed(thing.representation->summary.bound, thing.world).box;
+    if (!(length > 0) || !std::isfinite(length) || box.empty())
+        return {};
+    light::SkyHorizon out;
+    for (int axis = 0; axis < 3; ++axis) {
+        if (std::abs(up[axis]) < kUpright * length)
+            continue;
+        out.up = glm::dvec3(0.0);
+        out.up[axis] = up[axis] > 0 ? 1 : -1;
+        out.upright = true;
+    }
+    const glm::dvec3 middle = box.center();
+    const double wanted = kWider * std::max(box.size().x, box.size().y);
+    const bool above = std::any_of(grounds_.begin(), grounds_.end(), [&](const Box3& ground) {
+        return width_of(ground) >= wanted && ground.low.z <= middle.z && ground.low.x <= middle.x &&
+               middle.x <= ground.high.x && ground.low.y <= middle.y && middle.y <= ground.high.y;
+    });
+    if (above && out.upright)
+        out.below = 0;
+    return out;
+}
+
+}  // namespace lodestone::povray
