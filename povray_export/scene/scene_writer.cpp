@@ -326,8 +326,8 @@ private:
     }
 
     const WrittenSky& sky() const {
-        static const WrittenSky none;
-        return sky_ ? sky_->written() : none;
+        static const WrittenSky kNone;
+        return sky_ ? sky_->written() : kNone;
     }
     bool transparent() const { return options_.covered_only || model_.world.transparent; }
     static bool lit(const ExportOptions& options) {
