@@ -16,9 +16,6 @@ constexpr size_t kMostGrounds = 64;
 // The widths of a thing that a ground below it has at least.
 // Taste: a smaller value takes tables for grounds.
 constexpr double kWider = 3;
-// The cosine to the vertical from which on an axis of a thing is up.
-// Law: at 45 degrees the next one is as near.
-constexpr double kUpright = 0.70;
 
 double width_of(const Box3& box) {
     return std::min(box.size().x, box.size().y);
@@ -46,20 +43,21 @@ light::SkyHorizon SkyGrounds::horizon(const SkyThing& thing) const {
     if (!(length > 0) || !std::isfinite(length) || box.empty())
         return {};
     light::SkyHorizon out;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (std::abs(up[axis]) < kUpright * length)
-            continue;
-        out.up = glm::dvec3(0.0);
-        out.up[axis] = up[axis] > 0 ? 1 : -1;
-        out.upright = true;
+    int nearest = 0;  // axis to the vertical
+    for (int axis = 1; axis < 3; ++axis) {
+        if (std::abs(up[axis]) > std::abs(up[nearest]))
+            nearest = axis;
     }
+    out.up = glm::dvec3(0.0);
+    out.up[nearest] = up[nearest] > 0 ? 1 : -1;
+    out.upright = true;
     const glm::dvec3 middle = box.center();
     const double wanted = kWider * std::max(box.size().x, box.size().y);
     const bool above = std::any_of(grounds_.begin(), grounds_.end(), [&](const Box3& ground) {
         return width_of(ground) >= wanted && ground.low.z <= middle.z && ground.low.x <= middle.x &&
                middle.x <= ground.high.x && ground.low.y <= middle.y && middle.y <= ground.high.y;
     });
-    if (above && out.upright)
+    if (above)
         out.below = 0;
     return out;
 }

@@ -15,7 +15,8 @@ class SkyGrounds {
 public:
     explicit SkyGrounds(const SkyThings& all);
 
-    /// The sky below a thing: none above a ground that is several times as wide, all of it elsewhere.
+    /// The sky below a thing, by its axis that is nearest to the vertical: none above a ground that is
+    /// several times as wide, all of it elsewhere.
     light::SkyHorizon horizon(const SkyThing& thing) const;
 
 private:

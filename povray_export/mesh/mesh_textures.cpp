@@ -63,6 +63,9 @@ Key graded(Key key, uint32_t grade) {
     return key ^ (0x9e3779b97f4a7c15u * (uint64_t{grade} + 1));
 }
 
+// The textures of each hue of the sky's light that are left to colors of vertices.
+// Taste: a larger value shows more of the colors, and fewer of the hues.
+constexpr size_t kFewestColors = 32;
 // The largest steps of a tint.
 // Law: a signed byte holds them.
 constexpr int kMostTint = 127;
@@ -369,15 +372,18 @@ MeshTextures::SkyGrade MeshTextures::sky_grade(size_t triangle, int corner) cons
 void MeshTextures::find_tint_step() {
     if (!sky_ || !sky_->shares || sky_->shares->tints.empty())
         return;
+    const bool colored = std::any_of(slots_.begin(), slots_.end(),
+                                     [](const TexturedSlot& slot) { return slot.colored; });
+    const size_t most = colored ? kMost / kFewestColors : kMost;
     for (std::unordered_set<uint32_t> distinct;; tint_step_ *= 2, distinct.clear()) {
-        for (size_t i = 0; i < shown_.triangles.size() && distinct.size() <= kMost; ++i) {
+        for (size_t i = 0; i < shown_.triangles.size() && distinct.size() <= most; ++i) {
             check_job_sometimes(i);
             for (int corner = 0; corner < 3; ++corner) {
                 const SkyGrade grade = sky_grade(i, corner);
                 distinct.insert(number_of_tint(grade.red, grade.blue) << 8u | grade.share);
             }
         }
-        if (distinct.size() <= kMost || tint_step_ > kMostTint)
+        if (distinct.size() <= most || tint_step_ > kMostTint)
             return;
         job_.check();
     }

@@ -6,6 +6,8 @@
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/sky_occlusion.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <algorithm>
 #include <map>
 #include <regex>
@@ -78,6 +80,16 @@ TEST_F(SkyOnWhatMoves, AGroundHidesTheSkyBelowWhatMoves) {
     // Of six sides the upper one sees all of the sky, four see half of it and one none.
     EXPECT_NEAR(on_ground.at(solid), .5, .05);
     EXPECT_NEAR(on_ground.at(box), .5, .05);
+}
+
+TEST_F(SkyOnWhatMoves, WhatTumblesHasAboutTheSameLightInAllFrames) {
+    const ObjectIndex box = builder.mesh(shapes::box({-1, -1, -1}, {1, 1, 1}));
+    builder.model.objects[box].deforms = true;
+    const glm::dmat4 turn =
+        glm::rotate(glm::rotate(glm::dmat4(1.0), .96, {1, 0, 0}), .79, {0, 1, 0});
+    builder.place(box, {glm::dmat3(turn), {0, 0, 3}});
+    builder.place(builder.mesh(shapes::quad(200, 200)), at(-100, -100, 0));
+    EXPECT_NEAR(means().at(box), .5, .05);
 }
 
 TEST_F(SkyOnWhatMoves, OnlyWhatIsWiderAndBelowIsAGround) {

@@ -267,6 +267,23 @@ std::vector<EnvironmentLight> lights_of(const EnvironmentSky& sky, size_t count,
     return out;
 }
 
+/// Joins lights that stand for parts of one sun, through which a cut went.
+void join_near(std::vector<EnvironmentLight>& lights) {
+    for (size_t i = 0; i < lights.size(); ++i) {
+        for (size_t k = i + 1; k < lights.size();) {
+            if (glm::dot(lights[i].direction, lights[k].direction) < std::cos(kSunSize / 2)) {
+                ++k;
+                continue;
+            }
+            lights[i].direction =
+                glm::normalize(luminance(lights[i].irradiance) * lights[i].direction +
+                               luminance(lights[k].irradiance) * lights[k].direction);
+            lights[i].irradiance += lights[k].irradiance;
+            lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(k));
+        }
+    }
+}
+
 void drop_dark(std::vector<EnvironmentLight>& lights) {
     std::erase_if(
         lights, [](const EnvironmentLight& light) { return light.irradiance == glm::dvec3(0.0); });
@@ -311,6 +328,7 @@ EnvironmentLights environment_peaks(const World& world, size_t count) {
     const double wanted = std::ceil(static_cast<double>(count) * peaks / all);
     out.lights = lights_of(sky, std::max(static_cast<size_t>(wanted), least), kSunSize);
     drop_dark(out.lights);
+    join_near(out.lights);
     if (out.lights.size() == 1)  // the shadows of several blur one another
         out.lights[0].angle = width;
     return out;

@@ -38,7 +38,8 @@ class DrawnSkies:
     """Those that were drawn; part of the session."""
 
     def __init__(self) -> None:
-        self.pictures: dict[str, _Pictures | None] = {}  # by key; None: it cannot be drawn
+        self.pictures: dict[str, _Pictures] = {}  # by key
+        self.failed: set[str] = set()  # keys of those that could not be drawn
 
 
 class DrawnSky(Sky):
@@ -65,16 +66,20 @@ def drawn_sky(node: Any, width: int, height: int, folder: str) -> Sky:
     values = _values(node)
     told = json.dumps([_VERSION, bpy.app.version_string, width, height, values], sort_keys=True)
     key = hashlib.sha256(told.encode()).hexdigest()[:32]
-    drawn = addon_session().part(DrawnSkies).pictures
+    skies = addon_session().part(DrawnSkies)
+    drawn = skies.pictures
     kept = Path(folder) / FOLDER if folder else None
     if key not in drawn:
+        found = _from_folder(kept, key) if kept is not None else None
+        if found is None and key not in skies.failed:
+            found = _draw(values, width, height, key)
+        if found is None:
+            skies.failed.add(key)
+            return MeanSky(node)
         while len(drawn) >= _MOST_KEPT:
             del drawn[next(iter(drawn))]
-        found = _from_folder(kept, key) if kept is not None else None
-        drawn[key] = found or _draw(values, width, height, key)
+        drawn[key] = found
     pictures = drawn[key]
-    if pictures is None:
-        return MeanSky(node)
     if kept is not None and kept.parent.is_dir():
         _keep(pictures.files, kept)
     sun = None
@@ -154,6 +159,6 @@ def _keep(files: dict[str, bytes], folder: Path) -> None:
 
 def _is_there(path: Path, data: bytes) -> bool:
     try:
-        return path.stat().st_size == len(data)
+        return path.read_bytes() == data
     except OSError:
         return False
