@@ -57,8 +57,8 @@ Key rounded(Key key, uint64_t step) {
     return out;
 }
 
-/// Another key for each grade of the sky's light, and for each tint: equal ones of different colors, which are as
-/// likely as a collision of hashes, only count as one.
+/// Another key for each grade of the sky's light, and for each tint. Equal ones of different colors
+/// are as likely as a collision of hashes.
 Key graded(Key key, uint32_t grade) {
     return key ^ (0x9e3779b97f4a7c15u * (uint64_t{grade} + 1));
 }

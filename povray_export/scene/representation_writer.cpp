@@ -70,7 +70,7 @@ public:
         check(mesh);
         if (!options_.textures)
             return mesh_text(mesh, nullptr, identifier_, job_);
-        return lit_text(representation_, mesh);
+        return lit_text(representation_);
     }
 
     std::string operator()(const Solid& solid) const {
@@ -80,7 +80,7 @@ public:
             Representation lit = representation_;
             lit.payload = std::make_shared<const Mesh>(tessellated(representation_));
             lit.summary.kind = Kind::Mesh;
-            return lit_text(lit, lit.mesh());
+            return lit_text(lit);
         }
         const std::string text = solid_text(model_, representation_, solid, options_, pictures_);
         return text.empty() ? text : declare() + text;
@@ -146,7 +146,8 @@ private:
     }
 
     /// The text of a mesh, whose triangles are split where the sky's light on them varies.
-    std::string lit_text(const Representation& representation, const Mesh& mesh) const {
+    std::string lit_text(const Representation& representation) const {
+        const Mesh& mesh = representation.mesh();
         if (!options_.sky || !options_.sky->shares || light::whole(mesh, *options_.sky->shares))
             return textured_text(representation, options_);
         auto split = light::split_for_sky(mesh, *options_.sky->shares);

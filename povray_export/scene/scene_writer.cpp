@@ -200,13 +200,13 @@ private:
 
     /// Lets each use be drawn from a file.
     void add_files() {
-        // The shadow rays to lamps of a point from which on it has one texture, in a thing or in the
-        // mean of the picture, where a lamp counts as so many.
+        // The shadow rays to lamps of a point of a thing from which on it has one texture, and
+        // the lamps of one in the mean of the picture.
         // Taste: a larger value draws gloss better where lamps shine, and takes longer there.
         constexpr double kFewLampRays = 4;
-        constexpr double kRaysOfLamp = 1.1;  // Taste: as kFewLampRays
+        constexpr double kFewLamps = 3.6;  // Taste: as kFewLampRays
         const bool many = report_.lamps >= light::kManyLamps && !plan_.empty();
-        const bool few = many && kRaysOfLamp * plan_.lights_each >= kFewLampRays;
+        const bool few = many && plan_.lights_each >= kFewLamps;
         const std::vector<double> rays = lamp_rays(bounds_, plan_);
         for (size_t i = 0; i < uses_.size(); ++i) {
             OccurrenceUse& use = uses_[i];

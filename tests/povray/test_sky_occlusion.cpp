@@ -7,6 +7,7 @@
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/texture/texture_writer.h"
+#include "scenes/with_rays.h"
 
 #include <cstring>
 #include <regex>
@@ -19,12 +20,9 @@ using scenes::Builder;
 
 namespace {
 
-class SkyOcclusionScenes : public testing::Test {
+class SkyOcclusionScenes : public WithRays {
 protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
+    SkyOcclusionScenes() {
         std::filesystem::remove_all(own_scratch());  // with what an earlier run kept
         builder.model.world.color = glm::dvec3(0.5);
     }

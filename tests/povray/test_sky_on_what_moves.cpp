@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the sky's light on what moves in an animation, and on sides under an uneven sky.
-#include "image/image.h"
-#include "image/texture_sampler.h"
-#include "light/environment/environment_sky.h"
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/sky_occlusion.h"
+#include "scenes/sky_worlds.h"
+#include "scenes/with_rays.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <regex>
 
@@ -18,12 +18,9 @@ using scenes::Builder;
 
 namespace {
 
-class SkyOnWhatMoves : public testing::Test {
+class SkyOnWhatMoves : public WithRays {
 protected:
-    void SetUp() override {
-        std::string reason;
-        if (!ray::available(&reason))
-            GTEST_SKIP() << reason;
+    SkyOnWhatMoves() {
         std::filesystem::remove_all(own_scratch());  // with what an earlier run kept
         builder.model.world.color = glm::dvec3(0.5);
     }
@@ -106,17 +103,10 @@ TEST_F(SkyOnWhatMoves, OnlyWhatIsWiderAndBelowIsAGround) {
 
 // A sky of two sides lit everything by 24 suns, each a ray at every point.
 TEST_F(SkyOnSides, ASideIsLitByTheSkyThatItFacesWithoutRays) {
-    image::Image picture;
-    picture.width = 64;
-    picture.height = 32;
-    picture.linear = true;
-    for (int i = 0; i < 64 * 32; ++i) {
-        const glm::dvec3 way = light::equirectangular_direction((i % 64 + 0.5) / 64, 0.5);
-        for (const double channel : {1 + way.x, 1.0, 1 - way.x, 1.0})  // red toward X, then blue
-            picture.pixels.push_back(static_cast<float>(channel));
-    }
-    World& world = builder.model.world;
-    world.environment = image::make_picture(image::exr_bytes(picture), ColorSpace::Linear, "sky");
+    builder.model.world = world_of_sky([](const glm::dvec3& d) {
+        const double x = d.x / std::hypot(d.x, d.y);
+        return glm::dvec3(1 + x, 1.0, 1 - x);  // red toward X, then blue
+    });
     builder.place(builder.mesh(shapes::box({-1, -1, -1}, {1, 1, 1})));
     ExportOptions options;
     options.folder = own_scratch();

@@ -309,16 +309,13 @@ EnvironmentLights environment_peaks(const World& world, size_t count) {
         return out;
     EnvironmentSky sky(world);
     sky.take_below_peaks();
-    std::vector<SkyPart> parts;
-    parts.reserve(sky.texels().size());
     double peaks = 0;
     double all = 0;
     for (const SkyTexel& texel : sky.texels()) {
-        parts.push_back({texel.direction, texel.base, texel.solid_angle});
         peaks += luminance(texel.above());
         all += luminance(texel.power());
     }
-    out.uneven = std::make_shared<UnevenSky>(parts, sky.width(), sky.height(), sky.to_picture());
+    out.uneven = std::make_shared<UnevenSky>(sky);
     out.ambient = out.uneven->color();
     if (!(peaks > 0))
         return out;

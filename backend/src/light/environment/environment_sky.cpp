@@ -67,6 +67,11 @@ glm::dvec3 equirectangular_direction(double u, double v) {
     return {std::cos(height) * std::cos(turn), std::cos(height) * std::sin(turn), std::sin(height)};
 }
 
+glm::dvec2 equirectangular_place(const glm::dvec3& direction) {
+    return {0.5 - std::atan2(direction.y, direction.x) / (2 * kPi),
+            0.5 + std::atan2(direction.z, std::hypot(direction.x, direction.y)) / kPi};
+}
+
 EnvironmentSky::EnvironmentSky(const World& world) : width_(kWidth), height_(kHeight) {
     const image::PackedPtr packed = image::packed(*world.environment);
     const image::TexelRows picture(*packed, world.environment->space);

@@ -51,5 +51,7 @@ private:
 /// The direction of a texel at (u, v) in 0...1, in the picture's own frame: u = 1/2 is +X, falling
 /// u turns to +Y; v = 1 is +Z. This is Blender's equirectangular mapping.
 glm::dvec3 equirectangular_direction(double u, double v);
+/// The (u, v) of a direction of any length but 0.
+glm::dvec2 equirectangular_place(const glm::dvec3& direction);
 
 }  // namespace lodestone::light

@@ -27,9 +27,7 @@ constexpr double kOtherHue = 0.03;
 
 /// The direction in which the surface of a row and column faces.
 glm::dvec3 facing(int row, int column) {
-    const double height = kPi * (0.5 - (row + 0.5) / kRows);
-    const double turn = kPi * (1 - 2 * (column + 0.5) / kColumns);
-    return {std::cos(height) * std::cos(turn), std::cos(height) * std::sin(turn), std::sin(height)};
+    return equirectangular_direction((column + 0.5) / kColumns, 1 - (row + 0.5) / kRows);
 }
 
 size_t height_at(double sine) {
@@ -38,16 +36,15 @@ size_t height_at(double sine) {
 
 }  // namespace
 
-UnevenSky::UnevenSky(std::span<const SkyPart> parts, int width, int height,
-                     const glm::dmat3& to_picture)
-    : width_(width), height_(height), to_picture_(to_picture) {
-    find_received(parts);
+UnevenSky::UnevenSky(const EnvironmentSky& sky)
+    : width_(sky.width()), height_(sky.height()), to_picture_(sky.to_picture()) {
+    find_received(sky);
     find_color();
     if (color_ == glm::dvec3(0.0))
         return;
     std::vector<glm::dvec3> sums(kHeights, glm::dvec3(0.0));
     std::vector<double> solid_angles(kHeights, 0.0);
-    values_.reserve(parts.size());
+    values_.reserve(sky.texels().size());
     const auto in_parts = [this](const glm::dvec3& color) {
         glm::dvec3 out(0.0);
         for (int i = 0; i < 3; ++i)
@@ -56,29 +53,29 @@ UnevenSky::UnevenSky(std::span<const SkyPart> parts, int width, int height,
     };
     for (glm::dvec3& one : received_)
         one = in_parts(one);
-    for (const SkyPart& part : parts) {
-        const glm::dvec3 value = in_parts(part.radiance);
+    for (const SkyTexel& texel : sky.texels()) {
+        const glm::dvec3 value = in_parts(texel.base);
         values_.emplace_back(value);
-        sums[height_at(part.direction.z)] += value * part.solid_angle;
-        solid_angles[height_at(part.direction.z)] += part.solid_angle;
+        sums[height_at(texel.direction.z)] += value * texel.solid_angle;
+        solid_angles[height_at(texel.direction.z)] += texel.solid_angle;
     }
     for (size_t i = 0; i < sums.size(); ++i) {
-        // A height without a part is as the one below it: pictures may have few pixels.
+        // A height without a texel is as the one below it: pictures may have few pixels.
         const glm::vec3 before = by_height_.empty() ? glm::vec3(0.0f) : by_height_.back();
         by_height_.push_back(solid_angles[i] > 0 ? glm::vec3(sums[i] / solid_angles[i]) : before);
     }
     find_hash();
 }
 
-void UnevenSky::find_received(std::span<const SkyPart> parts) {
+void UnevenSky::find_received(const EnvironmentSky& sky) {
     received_.reserve(static_cast<size_t>(kRows) * kColumns);
     for (int row = 0; row < kRows; ++row) {
         for (int column = 0; column < kColumns; ++column) {
             const glm::dvec3 normal = facing(row, column);
             glm::dvec3 sum(0.0);
-            for (const SkyPart& part : parts)
-                sum += part.radiance *
-                       (part.solid_angle / kPi * std::max(0.0, glm::dot(normal, part.direction)));
+            for (const SkyTexel& texel : sky.texels())
+                sum += texel.base *
+                       (texel.solid_angle / kPi * std::max(0.0, glm::dot(normal, texel.direction)));
             received_.push_back(sum);
         }
     }
@@ -104,9 +101,7 @@ void UnevenSky::find_color() {
     if (!(luminance(on_ground) > 0))
         on_ground = glm::dvec3(1.0);
     color_ = on_ground * (most / luminance(on_ground));
-    const glm::dvec3 luma(luminance(glm::dvec3(1, 0, 0)), luminance(glm::dvec3(0, 1, 0)),
-                          luminance(glm::dvec3(0, 0, 1)));
-    weights_ = luma * color_ / most;
+    weights_ = kLuminanceWeights * color_ / most;
     for (const glm::dvec3& sum : received_) {
         const glm::dvec3 off = glm::abs(sum - color_ * (luminance(sum) / most));
         if (std::max({off.x, off.y, off.z}) > kOtherHue * most)
@@ -128,11 +123,9 @@ void UnevenSky::find_hash() {
 glm::dvec3 UnevenSky::toward(const glm::dvec3& direction) const {
     if (values_.empty())
         return glm::dvec3(0.0);
-    const glm::dvec3 own = to_picture_ * direction;
-    const double u = 0.5 - std::atan2(own.y, own.x) / (2 * kPi);
-    const double v = 0.5 - std::atan2(own.z, std::hypot(own.x, own.y)) / kPi;
-    const auto column = static_cast<size_t>(limited(u * width_, 0, width_ - 1));
-    const auto row = static_cast<size_t>(limited(v * height_, 0, height_ - 1));
+    const glm::dvec2 place = equirectangular_place(to_picture_ * direction);
+    const auto column = static_cast<size_t>(limited(place.x * width_, 0, width_ - 1));
+    const auto row = static_cast<size_t>(limited((1 - place.y) * height_, 0, height_ - 1));
     return glm::dvec3(values_[row * static_cast<size_t>(width_) + column]);
 }
 
@@ -141,9 +134,9 @@ glm::dvec3 UnevenSky::at_height(double sine) const {
 }
 
 glm::dvec3 UnevenSky::received(const glm::dvec3& normal) const {
-    const double height = std::atan2(normal.z, std::hypot(normal.x, normal.y));
-    const double row = limited((0.5 - height / kPi) * kRows - 0.5, 0, kRows - 1);
-    const double column = (0.5 - std::atan2(normal.y, normal.x) / (2 * kPi)) * kColumns - 0.5;
+    const glm::dvec2 place = equirectangular_place(normal);
+    const double row = limited((1 - place.y) * kRows - 0.5, 0, kRows - 1);
+    const double column = place.x * kColumns - 0.5;
     const auto at = [this](double y, double x) -> const glm::dvec3& {
         const int around = (static_cast<int>(x) + kColumns) % kColumns;
         return received_at(static_cast<int>(y), around);

@@ -3,35 +3,23 @@
 #pragma once
 
 #include "base/hash.h"
+#include "light/environment/environment_sky.h"
 
-#include <glm/mat3x3.hpp>
-#include <glm/vec3.hpp>
-
-#include <span>
 #include <vector>
 
 namespace lodestone::light {
-
-/// A part of a sky: the direction in which it is seen (unit, world), its radiance and its solid
-/// angle.
-struct SkyPart {
-    glm::dvec3 direction{0.0};
-    glm::dvec3 radiance{0.0};
-    double solid_angle = 0;
-};
 
 /// The radiance of a sky by direction, in parts of one color: the radiance all around by which a
 /// surface receives as much, in luminance, as the sky gives to that which it lights most, of those
 /// facing any way with nothing around them.
 class UnevenSky {
 public:
-    /// `parts`: [height][width], as equirectangular_direction() has them, from the zenith down, in a
-    /// frame to which `to_picture` turns the world's directions.
-    UnevenSky(std::span<const SkyPart> parts, int width, int height, const glm::dmat3& to_picture);
+    /// The base of a sky: what is not left to lights.
+    explicit UnevenSky(const EnvironmentSky& sky);
 
     /// The color; its hue is that of level ground and what faces up. 0 of a black sky.
     const glm::dvec3& color() const { return color_; }
-    /// That of the part in a direction (world, any length but 0), in parts of the color.
+    /// That of the texel in a direction (world, any length but 0), in parts of the color.
     glm::dvec3 toward(const glm::dvec3& direction) const;
     /// The mean of all directions so high above the horizon; the sine of the angle.
     glm::dvec3 at_height(double sine) const;
@@ -50,7 +38,7 @@ public:
     Hash hash() const { return hash_; }
 
 private:
-    void find_received(std::span<const SkyPart> parts);
+    void find_received(const EnvironmentSky& sky);
     void find_color();
     const glm::dvec3& received_at(int row, int column) const;
     void find_hash();

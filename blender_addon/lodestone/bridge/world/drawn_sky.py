@@ -17,7 +17,15 @@ import bpy
 from ...core.batch import process_session
 from ...core.native import lodestone_native as native
 from ...core.session.addon_session import addon_session
-from .sky_texture import Color, MeanSky, Sky, SkySun, direction_to_sun, has_sun
+from .sky_texture import (
+    Color,
+    MeanSky,
+    Sky,
+    SkySun,
+    direction_to_sun,
+    has_sun,
+    place_all_around,
+)
 
 FOLDER = "skies"  # in the folder of levels
 _SCRIPT = Path(__file__).with_name("sky_in_blender.py")
@@ -52,8 +60,7 @@ class DrawnSky(Sky):
 
     def color(self, x: float, y: float, z: float) -> Color:
         pictures = self._pictures
-        u = 0.5 - math.atan2(y, x) / (2.0 * math.pi)
-        v = 0.5 + math.atan2(z, math.hypot(x, y)) / math.pi
+        u, v = place_all_around(x, y, z)
         column = min(pictures.width - 1, max(0, int(u * pictures.width)))
         row = min(pictures.height - 1, max(0, int(v * pictures.height)))
         at = 4 * (row * pictures.width + column)
@@ -72,7 +79,8 @@ def drawn_sky(node: Any, width: int, height: int, folder: str) -> Sky:
     if key not in drawn:
         found = _from_folder(kept, key) if kept is not None else None
         if found is None and key not in skies.failed:
-            found = _draw(values, width, height, key)
+            to_sun = direction_to_sun(node) if has_sun(node) else None
+            found = _draw({"node": values, "to_sun": to_sun, "width": width, "height": height}, key)
         if found is None:
             skies.failed.add(key)
             return MeanSky(node)
@@ -83,7 +91,7 @@ def drawn_sky(node: Any, width: int, height: int, folder: str) -> Sky:
     if kept is not None and kept.parent.is_dir():
         _keep(pictures.files, kept)
     sun = None
-    if has_sun(node) and max(pictures.sun) > 0.0:
+    if max(pictures.sun) > 0.0:
         sun = SkySun(direction_to_sun(node), pictures.sun, node.sun_size)
     return DrawnSky(pictures, sun)
 
@@ -100,10 +108,11 @@ def _values(node: Any) -> dict[str, Any]:
     return found
 
 
-def _draw(values: dict[str, Any], width: int, height: int, key: str) -> _Pictures | None:
+def _draw(job: dict[str, Any], key: str) -> _Pictures | None:
+    """What sky_in_blender.py makes of its JSON, but for the files that it writes."""
     with tempfile.TemporaryDirectory(prefix="lodestone-sky-") as work:
         sky, sun = Path(work) / f"{key}.exr", Path(work) / f"{key}.json"
-        job = {"node": values, "width": width, "height": height, "sky": str(sky), "sun": str(sun)}
+        job = {**job, "sky": str(sky), "sun": str(sun)}
         command = [bpy.app.binary_path, "-b", "--factory-startup", "--python-exit-code", "1"]
         command += ["--python", str(_SCRIPT), "--", json.dumps(job)]
         try:

@@ -3,9 +3,10 @@
 
 blender -b --factory-startup --python-exit-code 1 --python THIS -- JSON
 
-JSON: `node` (the values of the texture's node, by identifier), `width`, `height`, `sky` (OpenEXR,
-all around as an environment texture is), `sun` (a file of numbers: its irradiance in W/m^2 of red,
-green and blue, square to it; 0 of a sky without one).
+JSON: `node` (the values of the texture's node, by identifier), `to_sun` (the direction to its sun;
+null: it has none), `width`, `height`, `sky` (OpenEXR, all around as an environment texture is),
+`sun` (a file of numbers: its irradiance in W/m^2 of red, green and blue, square to it; 0 of a sky
+without one).
 """
 
 import json
@@ -66,13 +67,10 @@ def _draw_sky(scene: Any, given: dict[str, Any]) -> None:
     _rendered(scene, given["sky"], given["width"], given["height"], _SKY_SAMPLES)
 
 
-def _sun_without_sky(scene: Any, sky: Any, picture: str) -> list[float]:
+def _sun_without_sky(scene: Any, sky: Any, to_sun: Vector, picture: str) -> list[float]:
     """The irradiance of its sun; the sky before and around it does not count."""
-    high, turn = sky.sun_elevation, sky.sun_rotation
-    if not high + sky.sun_size / 2 > 0.0:  # it has set
+    if not sky.sun_elevation + sky.sun_size / 2 > 0.0:  # it has set
         return [0.0, 0.0, 0.0]
-    flat = math.cos(high)
-    to_sun = Vector((flat * math.sin(turn), flat * math.cos(turn), math.sin(high)))
     camera = scene.camera
     camera.data.type = "PERSP"
     camera.data.angle = min(math.radians(170), max(1e-3, _AROUND_SUN * sky.sun_size))
@@ -110,10 +108,9 @@ def main() -> None:
     sky = _sky_node(given["node"], world)
     scene = _scene(world)
     sun = [0.0, 0.0, 0.0]
-    if sky.sky_type not in {"PREETHAM", "HOSEK_WILKIE"}:
-        if sky.sun_disc:
-            sun = _sun_without_sky(scene, sky, f"{given['sun']}.exr")
-        sky.sun_disc = False
+    if given["to_sun"] is not None:
+        sun = _sun_without_sky(scene, sky, Vector(given["to_sun"]), f"{given['sun']}.exr")
+    sky.sun_disc = False
     _draw_sky(scene, given)
     Path(given["sun"]).write_text(json.dumps(sun), "utf-8")
 

@@ -8,7 +8,7 @@ from typing import Any
 from mathutils import Euler, Matrix, Vector
 
 from ..datablock_ids import name_of
-from .sky_texture import MeanSky, Sky, SkySun
+from .sky_texture import MeanSky, Sky, SkySun, place_all_around
 
 Value = Any  # a float for numbers, a tuple of three for colors and vectors
 Function = Callable[[Vector], Value]
@@ -107,10 +107,7 @@ class SkyNodes:
             raise Unknown(f'image "{name_of(image)}"')
 
         def sample(d: Vector) -> Value:
-            x, y, z = vector(d)
-            u = 0.5 - math.atan2(y, x) / (2.0 * math.pi)
-            v = 0.5 + math.atan2(z, math.hypot(x, y)) / math.pi
-            return self._texel(image, u, v)
+            return self._texel(image, *place_all_around(*vector(d)))
 
         return sample
 

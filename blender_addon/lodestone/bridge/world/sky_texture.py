@@ -38,6 +38,15 @@ class SkySun:
     angle: float
 
 
+def place_all_around(x: float, y: float, z: float) -> tuple[float, float]:
+    """The (u, v) in 0...1 of a direction of any length in an environment texture: its middle is +X,
+    and v is 1 at +Z."""
+    return (
+        0.5 - math.atan2(y, x) / (2.0 * math.pi),
+        0.5 + math.atan2(z, math.hypot(x, y)) / math.pi,
+    )
+
+
 class Sky:
     """A sky texture by the direction one looks in. `drawn`: as Blender draws it, else nearly."""
 
@@ -67,6 +76,12 @@ class MeanSky(Sky):
             share = min(1.0, max(0.0, 1.0 + 2.5 * height)) ** 3
         red, green, blue = self._tint
         return (share * red, share * green, share * blue)
+
+
+class SkyToDraw(MeanSky):
+    """In place of one that is drawn when it comes to it, for all that can be told before."""
+
+    drawn = True
 
 
 def mean_of_sky(node: Any) -> Color:

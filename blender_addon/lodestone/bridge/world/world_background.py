@@ -20,7 +20,7 @@ from ..nodes.image_pixels import read_pixels
 from ..nodes.node_values import NodeValues
 from .drawn_sky import drawn_sky
 from .sky_nodes import SkyNodes, Unknown
-from .sky_texture import MeanSky, Sky, mean_of_sky
+from .sky_texture import Sky, SkyToDraw, mean_of_sky
 
 MOST_BACKGROUNDS = 16  # in one world
 WIDTH, HEIGHT = 128, 64  # the size of the image that nodes are drawn into
@@ -192,9 +192,7 @@ class _Reader:
 
     def _sky(self, node: Any) -> Sky:
         if self._glance:
-            found = MeanSky(node)
-            found.drawn = True  # it is when it comes to it, for all that can be told before
-            return found
+            return SkyToDraw(node)
         return drawn_sky(node, WIDTH, HEIGHT, self._store)
 
     def _texel(self, image: Any, u: float, v: float) -> Any | None:

@@ -130,7 +130,7 @@ CONTROLS = (
     Control(
         "sky_occlusion", "Sky Occlusion", "shadows", _sky_occlusion, "", 0, 1024,
         "Rays by which each corner of a large triangle (half as many: of a small one) finds how "
-        "much of the sky's even light reaches it: under trees and roofs it is darker. What they "
+        "much of the sky's light reaches it: under trees and roofs it is darker. What they "
         "find is kept for the next picture, which they make take a little longer. 0: the sky "
         "shines through everything. Bounces do without it",
     ),

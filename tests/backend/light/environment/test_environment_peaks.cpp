@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the light of skies by direction, and which of their peaks become lights.
-#include "image/image.h"
-#include "image/texture_sampler.h"
 #include "light/environment/environment_lights.h"
-#include "light/environment/environment_sky.h"
+#include "scenes/sky_worlds.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
-#include <functional>
 #include <gtest/gtest.h>
 
 using namespace lodestone;
@@ -16,28 +13,6 @@ using light::environment_peaks;
 using light::EnvironmentLights;
 
 namespace {
-
-using Radiance = std::function<glm::dvec3(const glm::dvec3&)>;
-
-/// A world whose picture has this radiance by direction.
-World world_of(const Radiance& radiance) {
-    image::Image sky;
-    sky.width = 128;
-    sky.height = 64;
-    sky.linear = true;
-    for (int y = 0; y < sky.height; ++y) {
-        for (int x = 0; x < sky.width; ++x) {
-            const glm::dvec3 color = radiance(light::equirectangular_direction(
-                (x + 0.5) / sky.width, 1 - (y + 0.5) / sky.height));
-            for (int c = 0; c < 3; ++c)
-                sky.pixels.push_back(static_cast<float>(color[c]));
-            sky.pixels.push_back(1);
-        }
-    }
-    World world;
-    world.environment = image::make_picture(image::exr_bytes(sky), ColorSpace::Linear, "sky");
-    return world;
-}
 
 glm::dvec3 upper_half(const glm::dvec3& d) {
     return glm::dvec3(d.z > 0 ? 2 : 0);
@@ -58,7 +33,7 @@ TEST(EnvironmentPeaks, WithoutAPictureThereIsNoLight) {
 
 TEST(EnvironmentPeaks, ABlackPictureGivesNoLight) {
     const EnvironmentLights sky =
-        environment_peaks(world_of([](const glm::dvec3&) { return glm::dvec3(0.0); }), 24);
+        environment_peaks(world_of_sky([](const glm::dvec3&) { return glm::dvec3(0.0); }), 24);
     EXPECT_EQ(sky.ambient, glm::dvec3(0.0));
     EXPECT_TRUE(sky.lights.empty());
     EXPECT_EQ(sky.uneven->toward({0, 0, 1}), glm::dvec3(0.0));
@@ -66,7 +41,7 @@ TEST(EnvironmentPeaks, ABlackPictureGivesNoLight) {
 }
 
 TEST(EnvironmentPeaks, AUniformPictureIsOneEverywhere) {
-    World world = world_of([](const glm::dvec3&) { return glm::dvec3(1, 0.5, 0.25); });
+    World world = world_of_sky([](const glm::dvec3&) { return glm::dvec3(1, 0.5, 0.25); });
     world.environment_strength = {2, 2, 2};
     const EnvironmentLights sky = environment_peaks(world, 24);
     EXPECT_TRUE(sky.lights.empty());
@@ -81,7 +56,7 @@ TEST(EnvironmentPeaks, AUniformPictureIsOneEverywhere) {
 }
 
 TEST(EnvironmentPeaks, TheSurfaceThatIsLitMostHasAShareOfOne) {
-    const EnvironmentLights sky = environment_peaks(world_of(upper_half), 24);
+    const EnvironmentLights sky = environment_peaks(world_of_sky(upper_half), 24);
     EXPECT_TRUE(sky.lights.empty());
     EXPECT_NEAR(sky.ambient.x, 2, 0.02);  // what level ground receives, over pi
     EXPECT_NEAR(sky.uneven->toward({0.6, 0, 0.8}).x, 1, 0.01);
@@ -91,7 +66,7 @@ TEST(EnvironmentPeaks, TheSurfaceThatIsLitMostHasAShareOfOne) {
 }
 
 TEST(EnvironmentPeaks, ASunIsOneLightAndTheSkyIsWithoutIt) {
-    const EnvironmentLights sky = environment_peaks(world_of(sunny), 24);
+    const EnvironmentLights sky = environment_peaks(world_of_sky(sunny), 24);
     ASSERT_EQ(sky.lights.size(), 1u);
     const glm::dvec3 sun = glm::normalize(glm::dvec3(1, -1, 1));
     EXPECT_GT(-glm::dot(sky.lights[0].direction, sun), std::cos(0.02));
@@ -107,7 +82,7 @@ TEST(EnvironmentPeaks, ASunIsOneLightAndTheSkyIsWithoutIt) {
 
 TEST(EnvironmentPeaks, AWidePeakIsAWideLight) {
     const EnvironmentLights sky =
-        environment_peaks(world_of([](const glm::dvec3& d) {
+        environment_peaks(world_of_sky([](const glm::dvec3& d) {
                               return glm::dvec3(0.8 * d.x + 0.6 * d.z > std::cos(0.08) ? 100 : 1);
                           }),
                           8);
@@ -118,7 +93,7 @@ TEST(EnvironmentPeaks, AWidePeakIsAWideLight) {
 // Two lamps far apart were one light halfway between them.
 TEST(EnvironmentPeaks, PeaksFarApartAreSeveralLights) {
     const glm::dvec3 ways[] = {{0, 1, 0}, glm::normalize(glm::dvec3(1, -1, 1))};
-    const EnvironmentLights sky = environment_peaks(world_of([&](const glm::dvec3& d) {
+    const EnvironmentLights sky = environment_peaks(world_of_sky([&](const glm::dvec3& d) {
                                                         const bool lamp =
                                                             glm::dot(d, ways[0]) > std::cos(0.04) ||
                                                             glm::dot(d, ways[1]) > std::cos(0.04);
@@ -138,7 +113,7 @@ TEST(EnvironmentPeaks, PeaksFarApartAreSeveralLights) {
 TEST(EnvironmentPeaks, ASunAcrossThePicturesEdgeIsOne) {
     const glm::dvec3 sun = glm::normalize(glm::dvec3(-1, 0, 0.3));
     const EnvironmentLights sky =
-        environment_peaks(world_of([&](const glm::dvec3& d) {
+        environment_peaks(world_of_sky([&](const glm::dvec3& d) {
                               return glm::dvec3(glm::dot(d, sun) > std::cos(0.06) ? 4000 : 1);
                           }),
                           24);
@@ -148,7 +123,7 @@ TEST(EnvironmentPeaks, ASunAcrossThePicturesEdgeIsOne) {
 }
 
 TEST(EnvironmentPeaks, TurningThePictureTurnsTheSky) {
-    World world = world_of([](const glm::dvec3& d) {
+    World world = world_of_sky([](const glm::dvec3& d) {
         return glm::dvec3(d.x > 0.5 ? 4.0 : d.x < -0.5 ? 1.0 : 2.0);
     });
     world.environment_turn = glm::dmat3(glm::rotate(glm::dmat4(1.0), kPi / 2, {0, 0, 1}));
@@ -162,9 +137,9 @@ TEST(EnvironmentPeaks, OtherSkiesHaveOtherHashes) {
     const auto hash = [](const World& world) {
         return environment_peaks(world, 24).uneven->hash();
     };
-    World turned = world_of(sunny);
+    World turned = world_of_sky(sunny);
     turned.environment_turn = glm::dmat3(glm::rotate(glm::dmat4(1.0), 1.0, {0, 0, 1}));
-    EXPECT_EQ(hash(world_of(sunny)), hash(world_of(sunny)));
-    EXPECT_NE(hash(world_of(sunny)), hash(turned));
-    EXPECT_NE(hash(world_of(sunny)), hash(world_of(upper_half)));
+    EXPECT_EQ(hash(world_of_sky(sunny)), hash(world_of_sky(sunny)));
+    EXPECT_NE(hash(world_of_sky(sunny)), hash(turned));
+    EXPECT_NE(hash(world_of_sky(sunny)), hash(world_of_sky(upper_half)));
 }

@@ -2,35 +2,33 @@
 // Guards the light that surfaces have of a sky that is not equally bright everywhere.
 #include "backend/light/sky/sky_places.h"
 #include "base/color.h"
-#include "light/environment/environment_sky.h"
+#include "light/environment/environment_lights.h"
 #include "light/sky/sky_means.h"
+#include "scenes/sky_worlds.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
+#include <functional>
 
 using namespace lodestone;
 using namespace lodestone::light;
 
 namespace {
 
+using Radiance = std::function<glm::dvec3(const glm::dvec3&)>;
+
+UnevenSky sky_of(const Radiance& radiance) {
+    return *environment_peaks(world_of_sky(radiance), 24).uneven;
+}
 /// A sky of radiance 1 + x, in red 1 - x: a surface that faces n receives pi (1 +- 2/3 n.x).
 UnevenSky uneven_sky(bool red_behind) {
-    constexpr int kWidth = 128;
-    constexpr int kHeight = 64;
-    std::vector<SkyPart> parts;
-    for (int y = 0; y < kHeight; ++y) {
-        const double solid_angle =
-            (std::cos(kPi * y / kHeight) - std::cos(kPi * (y + 1) / kHeight)) * 2 * kPi / kWidth;
-        for (int x = 0; x < kWidth; ++x) {
-            const glm::dvec3 direction =
-                equirectangular_direction((x + 0.5) / kWidth, 1 - (y + 0.5) / kHeight);
-            const double more = 1 + direction.x;
-            const glm::dvec3 radiance(red_behind ? 2 - more : more, more, more);
-            parts.push_back({direction, radiance, solid_angle});
-        }
-    }
-    return {parts, kWidth, kHeight, glm::dmat3(1.0)};
+    return sky_of([red_behind](const glm::dvec3& d) {
+        return glm::dvec3(red_behind ? 1 - d.x : 1 + d.x, 1 + d.x, 1 + d.x);
+    });
+}
+UnevenSky black_below() {
+    return sky_of([](const glm::dvec3& d) { return glm::dvec3(d.z > 0 ? 1.0 : 0.0); });
 }
 
 class SharesOfUnevenSkies : public SkyPlaces {
@@ -130,15 +128,7 @@ TEST(SkyTints, PartsThatDoNotArriveAreTheSmallest) {
 // read: it was found anew for every picture.
 TEST_F(SharesOfUnevenSkies, OpenGroundHasAMeanOfAtMostOneAndIsKept) {
     const ObjectIndex ground = builder.mesh(shapes::quad(4, 4));
-    std::vector<SkyPart> parts;
-    for (int y = 0; y < 64; ++y) {
-        const double solid_angle =
-            (std::cos(kPi * y / 64) - std::cos(kPi * (y + 1) / 64)) * 2 * kPi / 128;
-        for (int x = 0; x < 128; ++x)
-            parts.push_back({equirectangular_direction((x + 0.5) / 128, 1 - (y + 0.5) / 64),
-                             glm::dvec3(y < 32 ? 1.0 : 0.0), solid_angle});
-    }
-    const UnevenSky above(parts, 128, 64, glm::dmat3(1.0));
+    const UnevenSky above = black_below();
     const SkyPlace place(*this, {{ground, {}}});
     SkyRequest request{place.surfaces.of(finest(ground)), {}, &*place.scene, 0, 256, 0};
     request.uneven = &above;
@@ -151,10 +141,7 @@ TEST_F(SharesOfUnevenSkies, OpenGroundHasAMeanOfAtMostOneAndIsKept) {
 
 TEST_F(SharesOfUnevenSkies, WhereTheSkyIsBlackNothingCountsAsInside) {
     // A sky that is black below: the lower side is dark, and not because something is around it.
-    std::vector<SkyPart> parts;
-    for (const double z : {0.5, -0.5})
-        parts.push_back({{0, 0, z > 0 ? 1.0 : -1.0}, glm::dvec3(z > 0 ? 1.0 : 0.0), 2 * kPi});
-    const UnevenSky above(parts, 1, 2, glm::dmat3(1.0));
+    const UnevenSky above = black_below();
     const SkyPlace place(*this, {{object, {}}});
     SkyRequest request{place.surfaces.of(finest(object)), {}, &*place.scene, 0, 256, 0};
     request.uneven = &above;
