@@ -14,7 +14,7 @@ import blender_scenes as scenes  # noqa: E402
 import window_steps as steps  # noqa: E402
 
 LONGER_S = 2 * (0.02, 0.05, 0.1, 0.2, 0.3)  # a call of the engine lies otherwise beside each
-_begins = threading.Event()  # the render has come as far as where it calls the engine next
+_begins = threading.Event()  # the render calls its handlers, and the engine next
 
 
 class TEST_PT_slow(bpy.types.Panel):
@@ -51,7 +51,7 @@ def writing_is_allowed_after_a_render_that_began_amid_a_panel():
     scenes.sun()
     scenes.cube()
     bpy.utils.register_class(TEST_PT_slow)
-    bpy.app.handlers.render_pre.append(lambda *_: _begins.set())
+    bpy.app.handlers.render_pre.insert(0, lambda *_: _begins.set())
     first = bpy.context.window_manager.windows[0]
     shown = next(area for area in first.screen.areas if area.type == "PROPERTIES")
     shown.spaces[0].context = "RENDER"
