@@ -130,7 +130,8 @@ class TreeOfLeaves(unittest.TestCase):
         return folder
 
     def rendered(self, folder, size, rays):
-        """With rays x rays to a pixel; the light, and CPU seconds of reading and tracing."""
+        """With rays x rays to a pixel; the light, CPU seconds of reading and tracing, and how often
+        POV-Ray asked whether a ray meets a shape or a box around some."""
         many = ["+A0.0", "+AM1", f"+R{rays}", "-J", "Antialias_Gamma=1"] if rays > 1 else ["-A"]
         done = subprocess.run(
             ["povray", "+Igrove.pov", "+Oout.png", f"+W{size}", f"+H{size}", "-D", "+FN16"]
@@ -142,21 +143,31 @@ class TreeOfLeaves(unittest.TestCase):
         )
         self.assertEqual(done.returncode, 0, done.stderr)
         seconds = re.findall(r"Time:.*\n\s*using \d+ thread.* with ([\d.]+) CPU", done.stderr)
-        return light_of(folder / "out.png"), max(0.001, sum(map(float, seconds)))
+        tests = re.findall(r"^\S.*?\s{2,}(\d+) +\d+ +[\d.]+$", done.stderr, re.MULTILINE)
+        self.assertGreater(len(tests), 1, done.stderr)
+        return (
+            light_of(folder / "out.png"),
+            max(0.001, sum(map(float, seconds))),
+            sum(map(int, tests)),
+        )
 
     def compared(self, pixels, side):
-        """Mean square errors and CPU seconds of 1 and 64 rays to the leaves, 1 to the stand-in."""
+        """Mean square errors, CPU seconds and tests of 1 and 64 rays to the leaves, and of 1 to the
+        stand-in."""
         leaves, stand_in = (self.grove(pixels, side, error) for error in (0, 1))
         size = pixels * side
         truth = self.rendered(leaves, size, TRUTH)[0]
         out = {}
         for name, folder, rays in (("1", leaves, 1), ("64", leaves, 8), ("stand-in", stand_in, 1)):
-            light, seconds = self.rendered(folder, size, rays)
+            light, seconds, tests = self.rendered(folder, size, rays)
             if rays == 1:  # short: the least of three counts
                 seconds = min([seconds] + [self.rendered(folder, size, 1)[1] for _ in range(2)])
             off = sum((a - b) ** 2 for a, b in zip(light, truth)) / len(truth)
-            print(f"{pixels} px, {name}: mean square {off:.6f}, {seconds:.3f} CPU s", end="; ")
-            out[name] = (off, seconds)
+            print(
+                f"{pixels} px, {name}: mean square {off:.6f}, {seconds:.3f} CPU s, {tests} tests",
+                end="; ",
+            )
+            out[name] = (off, seconds, tests)
         return out
 
     def test_one_ray_to_a_stand_in_of_16_pixels_is_nearer_to_the_truth_than_one_to_the_leaves(self):
@@ -164,13 +175,13 @@ class TreeOfLeaves(unittest.TestCase):
         self.assertLess(found["stand-in"][0], 0.75 * found["1"][0])
         self.assertLess(found["stand-in"][1], found["1"][1])
 
-    def test_where_a_pixel_holds_hundreds_of_leaves_a_second_of_the_stand_in_is_worth_most(self):
+    def test_where_a_pixel_holds_hundreds_of_leaves_a_ray_to_the_stand_in_is_worth_most(self):
         found = self.compared(6, 16)
-        # What a second of such rays would bring the mean square error down to.
-        per_second = {name: off * seconds for name, (off, seconds) in found.items()}
-        self.assertLess(per_second["stand-in"], per_second["1"] / 2)
-        # Nearly a draw, and hundredths of a second are noisy: backend/docs/results has them.
-        self.assertLess(per_second["stand-in"], 1.5 * per_second["64"])
+        # What as many tests would bring the mean square error down to. Seconds are hundredths here,
+        # and most of them are for reading 256 copies: another machine has others.
+        off = {name: error * tests for name, (error, _, tests) in found.items()}
+        self.assertLess(off["stand-in"], 0.75 * off["1"])
+        self.assertLess(off["stand-in"], 0.75 * off["64"])
         self.assertLess(found["stand-in"][0], found["1"][0])
 
 
