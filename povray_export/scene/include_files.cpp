@@ -336,10 +336,15 @@ bool IncludeFiles::bends_light(const Representation& representation) const {
                        });
 }
 
-bool IncludeFiles::refracts() const {
-    return std::any_of(files_.begin(), files_.end(), [&](const IncludeFile& include) {
-        return bends_light(*include.representation);
-    });
+OnwardRays IncludeFiles::onward() const {
+    OnwardRays out;
+    for (const IncludeFile& include : files_) {
+        for (const uint32_t material : include.representation->materials) {
+            if (material < model_.materials.size())
+                add_onward(model_.materials[material], out);
+        }
+    }
+    return out;
 }
 
 }  // namespace lodestone::povray

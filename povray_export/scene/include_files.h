@@ -5,6 +5,7 @@
 #include "povray_export/mesh/mesh_cutting.h"
 #include "povray_export/scene/representation_writer.h"
 #include "povray_export/scene/scene_writer.h"
+#include "povray_export/texture/texture_writer.h"
 
 #include <filesystem>
 #include <limits>
@@ -76,8 +77,8 @@ public:
     std::string statements() const;
     /// Adds what was written, or found again, to a report: these files and their pictures.
     void add_to(ExportReport& report) const;
-    /// Whether any file bends light.
-    bool refracts() const;
+    /// How rays go on at the surfaces of all files.
+    OnwardRays onward() const;
 
 private:
     void join_shadows();

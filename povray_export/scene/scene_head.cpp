@@ -4,7 +4,32 @@
 #include "povray_export/lamp/radiosity.h"
 #include "povray_export/scene/povray_number.h"
 
+#include <algorithm>
+
 namespace lodestone::povray {
+namespace {
+
+/// Law: 8 bits.
+constexpr double kDisplaySteps = 255;
+
+/// The surfaces one behind the other that show: what one more mirrors is less than what is left out
+/// anyway. POV-Ray follows a mirrored ray however little it is worth.
+uint64_t shown_depth(const OnwardRays& onward, const Shading& shading) {
+    const auto most = static_cast<uint64_t>(shading.trace_depth);
+    if (onward.refracted)
+        return 2 * most;  // two surfaces of a glass are two levels
+    if (shading.bounces > 0)
+        return most;
+    const double least = std::max(shading.reflection_error, 1.0) / kDisplaySteps;
+    uint64_t depth = 1;
+    for (double share = onward.mirrored; share >= least && depth < most; share *= onward.mirrored)
+        ++depth;
+    // A ray that goes on straight is on the level of the one that it goes on from, but POV-Ray
+    // follows none from the last.
+    return std::min(most, depth + (onward.clear ? 1 : 0));
+}
+
+}  // namespace
 
 std::string head_text(const SceneHead& head, const Shading& shading, const WrittenSky& sky) {
     const bool indirect = shading.bounces > 0;
@@ -27,11 +52,10 @@ std::string head_text(const SceneHead& head, const Shading& shading, const Writt
             "ambient.\n";
     }
     out += "global_settings{assumed_gamma 1 max_trace_level ";
-    // Two surfaces of a glass are two levels.
-    append_count(out, static_cast<uint64_t>(shading.trace_depth) * (head.refracts ? 2 : 1));
+    append_count(out, shown_depth(head.onward, shading));
     if (shading.reflection_error > 1) {
         out += " adc_bailout ";
-        append_number(out, shading.reflection_error / 255, 6);
+        append_number(out, shading.reflection_error / kDisplaySteps, 6);
     }
     if (indirect) {
         const bool lit = sky.ambient != glm::dvec3(0.0);

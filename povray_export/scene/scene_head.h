@@ -5,6 +5,7 @@
 #include "model/view.h"
 #include "povray_export/lamp/sky_writer.h"
 #include "povray_export/scene/shading.h"
+#include "povray_export/texture/texture_writer.h"
 
 #include <string>
 
@@ -15,7 +16,7 @@ struct SceneHead {
     double pixel_error = 0;
     uint64_t occurrences = 0;
     double times = 1;          // factor by which everything is written larger
-    bool refracts = false;     // true: some of it is glass
+    OnwardRays onward;         // at all surfaces
     bool transparent = false;  // true: the film is transparent
     glm::dvec3 eye{0.0};       // the eye as it is written
 };

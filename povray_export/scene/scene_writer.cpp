@@ -441,8 +441,8 @@ private:
         const std::map<light::GroupLight, std::string> names = scene_lights.declare(lights, plan_);
         std::string objects = grouped_objects(names, times);
         const Camera camera = magnified(view_.camera, times);
-        const SceneHead head{view_.pixel_error,    report_.occurrences, times,
-                             includes_.refracts(), transparent(),       camera.position};
+        const SceneHead head{view_.pixel_error,  report_.occurrences, times,
+                             includes_.onward(), transparent(),       camera.position};
         std::string out = head_text(head, shading_, sky());
         append_camera(out, camera, options_.antialiasing, problems_);
         if (lit()) {

@@ -37,6 +37,11 @@ constexpr double kVeil = 1.0 / 64;
 constexpr const char* kClear =
     "pigment{rgbt 1} finish{ambient 0 emission 0 diffuse 0 specular 0 reflection{rgb 0}}";
 
+/// The part of what a surface mirrors more at no angle than in front that it mirrors of light from
+/// all sides.
+/// Law: the mean of (1 - cosine)^5, weighed by the cosine.
+constexpr double kGrazingMean = 1.0 / 21;
+
 double share(double value, double otherwise) {
     return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
 }
@@ -392,6 +397,19 @@ private:
     PictureWriter& pictures_;
 };
 
+/// The largest share of light from all sides that a surface mirrors somewhere.
+double mean_mirror(const Material& material, bool uvs) {
+    // The smoothest that pictures may make of it, and the most metal, mirrors the most.
+    SurfaceLook look = look_of(material);
+    if (uvs && material.roughness_texture)
+        look.roughness = 0;
+    if (uvs && material.metallic_texture)
+        look.metallic = 1;
+    const Finish finish = finish_of(look);
+    const double mean = finish.mirror + (finish.mirror_grazing - finish.mirror) * kGrazingMean;
+    return std::max(mean, material.other ? mean_mirror(*material.other, uvs) : 0.0);
+}
+
 }  // namespace
 
 std::string texture_text(const Material& material, const TexturedSurface& surface,
@@ -405,19 +423,19 @@ bool bumpy(const Material& material) {
 }
 
 bool may_mirror(const Material& material, bool uvs) {
-    // The smoothest that pictures may make of it, and the most metal, mirrors the most.
-    SurfaceLook look = look_of(material);
-    if (uvs && material.roughness_texture)
-        look.roughness = 0;
-    if (uvs && material.metallic_texture)
-        look.metallic = 1;
-    return finish_of(look).mirror_grazing > 0 ||
-           (material.other && may_mirror(*material.other, uvs));
+    return mean_mirror(material, uvs) > 0;
 }
 
 bool rays_go_on(const Material& material, bool uvs) {
     return material.alpha_mode != AlphaMode::Opaque || share(material.transmission, 0) > 0 ||
            may_mirror(material, uvs) || (material.other && rays_go_on(*material.other, uvs));
+}
+
+void add_onward(const Material& material, OnwardRays& rays) {
+    rays.mirrored = std::max(rays.mirrored, mean_mirror(material, true));
+    rays.refracted = rays.refracted || refraction_of(material) > 0;
+    for (const Material* one = &material; one != nullptr; one = one->other.get())
+        rays.clear = rays.clear || one->alpha_mode != AlphaMode::Opaque;
 }
 
 double refraction_of(const Material& material) {

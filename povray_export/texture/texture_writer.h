@@ -44,6 +44,16 @@ bool may_mirror(const Material& material, bool uvs);
 /// the textures of a triangle's corners. `uvs`: pictures are shown.
 bool rays_go_on(const Material& material, bool uvs);
 
+/// How rays go on at surfaces.
+struct OnwardRays {
+    double mirrored = 0;     // the largest share of light from all sides that any of it mirrors
+    bool clear = false;      // rays go on straight through some of it
+    bool refracted = false;  // some of it is glass
+};
+
+/// Adds how rays go on at a material whose pictures are shown.
+void add_onward(const Material& material, OnwardRays& rays);
+
 /// The index of refraction of a material that light goes through; 0 for all others.
 double refraction_of(const Material& material);
 

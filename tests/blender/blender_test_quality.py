@@ -169,7 +169,11 @@ class Files(unittest.TestCase):
         self.scene.render.resolution_x, self.scene.render.resolution_y = 16, 16
         self.settings.build_on_render = "NONE"
         self.settings.keep_scene_files = "ALWAYS"
-        scenes.cube()
+        mirror = bpy.data.materials.new("Mirror")
+        mirror.use_nodes = True
+        surface = mirror.node_tree.nodes["Principled BSDF"].inputs
+        surface["Metallic"].default_value, surface["Roughness"].default_value = 1.0, 0.0
+        scenes.cube().data.materials.append(mirror)
         lamp = bpy.data.lights.new("Lamp", "AREA")
         lamp.size = 2.0
         scenes.link(bpy.data.objects.new("Lamp", lamp)).location = (0, 0, 4)

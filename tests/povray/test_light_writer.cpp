@@ -65,6 +65,25 @@ TEST(PovrayLight, HoweverWideASunPointsAreShadedOnceForAllOfIt) {
     }
 }
 
+// Boxes beside a floor hid whole rows of rays at once: stripes in wide penumbrae.
+TEST(PovrayLight, TheRaysOfASunStandInNoRowAlongTheEdgesOfUprightThings) {
+    for (const glm::dvec3& way :
+         {glm::dvec3(1, 0, -1), glm::dvec3(0, 2, -1), glm::dvec3(1, 1, -3)}) {
+        Light sun = light_of(LightKind::Sun);
+        sun.angle = 0.2;
+        sun.direction = way;
+        const std::string text = written(sun).text;
+        const char* at = text.c_str() + text.find("area_light <") + 12;
+        glm::dvec3 u;
+        ASSERT_EQ(std::sscanf(at, "%lf,%lf,%lf", &u.x, &u.y, &u.z), 3);
+        EXPECT_NEAR(glm::dot(u, way), 0, 1e-9 * glm::length(u));
+        const glm::dvec3 level = glm::normalize(glm::cross(way, glm::dvec3(0, 0, 1)));
+        const double degrees = std::acos(std::abs(glm::dot(level, glm::normalize(u)))) * 180 / kPi;
+        EXPECT_GT(degrees, 15);
+        EXPECT_LT(degrees, 75);
+    }
+}
+
 // A third of the rays of a front of windows went to places between others that lit the same.
 TEST(PovrayLight, AreasWithoutSoftShadowsBeginWithTheirCorners) {
     Light area = light_of(LightKind::Area);

@@ -21,6 +21,15 @@ constexpr double kNarrowSun = 0.009;
 /// The rays along an edge of such a sun.
 /// Taste: a larger value has smoother shadows of it where something is very near.
 constexpr int kNarrowRays = 5;
+/// The rays along an edge from which on a ray stands for more, kPenumbraeOfManyRays.
+/// Taste: a larger value has smoother shadows of wide suns, for time that grows with its square.
+constexpr double kFewRays = 3;
+/// The narrowest penumbrae that show, side by side in one, for which one of many rays stands: the
+/// rays of a grid that is turned hide one after the other along most edges, so that a penumbra has
+/// many more steps than an edge of the grid has rays.
+/// Taste: beneath a sun 11 degrees wide 9 x 9 rays are then as far from 33 x 33 as 17 x 17 are in a
+/// grid along the edges of boxes; a larger value shows steps.
+constexpr double kPenumbraeOfManyRays = 6;
 /// The rays that POV-Ray casts to a grid before it decides whether it needs the others.
 /// Law: its corners (adaptive 0).
 constexpr double kCorners = 4;
@@ -40,7 +49,10 @@ int rays_for(std::vector<double>& widths, double step, int most) {
     std::nth_element(widths.begin(), widths.begin() + static_cast<ptrdiff_t>(wider), widths.end(),
                      std::greater<>());
     const double steps = widths[wider] / step;
-    return steps > 1 ? grid_rays(std::max(2.0, steps / kPenumbraeOfRay), most) : 1;
+    if (!(steps > 1))
+        return 1;
+    const double few = std::max(2.0, steps / kPenumbraeOfRay);
+    return grid_rays(std::min(few, std::max(kFewRays, steps / kPenumbraeOfManyRays)), most);
 }
 
 }  // namespace
