@@ -186,6 +186,18 @@ class NodeValues(unittest.TestCase):
                 tree.links.new(add.outputs[0], emission.inputs["Color"])
         self.compare()
 
+    def test_random_is_that_of_cycles(self):
+        from lodestone.core.object_random import random_of
+
+        names = [f"Tree.{i:03}" for i in range(29)]
+        for name in ("a", "木.001", "x" * 63, *names):
+            tree, _ = self.graph(name)
+            info = tree.nodes.new("ShaderNodeObjectInfo")
+            emission = next(n for n in tree.nodes if n.type == "EMISSION")
+            tree.links.new(info.outputs["Random"], emission.inputs["Color"])
+        for material, cycles in zip(self.materials, self.shown(), strict=True):
+            self.assertAlmostEqual(random_of(material.name), cycles[0], delta=1e-4)
+
     def compare(self):
         given, named = self.translated()
         for material, ours, cycles in zip(self.materials, given, self.shown(), strict=True):

@@ -11,6 +11,7 @@ import bpy
 
 import blender_scenes as scenes
 from blender_case import Case
+from lodestone.core import object_random
 
 
 class WithoutFaces(Case):
@@ -284,6 +285,27 @@ class Sharing(Case):
             if leaf.data == "Shows":
                 colors.add(tuple(round(c, 5) for c in extraction.model.measure(leaf.object).color))
         self.assertEqual(colors, {(0.0, 0.5, 0.0), (0.25, 0.5, 0.0)})
+
+    def test_random_splits_leaves_of_a_shared_mesh_into_a_few(self):
+        """Trees whose color is Random's were all the mean's."""
+        shows = scenes.material("Shows")
+        info = shows.node_tree.nodes.new("ShaderNodeObjectInfo")
+        socket = shows.node_tree.nodes["Principled BSDF"].inputs["Base Color"]
+        shows.node_tree.links.new(info.outputs["Random"], socket)
+        shared, own = scenes.cube_mesh("Shared"), scenes.cube_mesh("Own")
+        for data in (shared, own):
+            data.materials.append(shows)
+        for i in range(100):
+            scenes.cube(f"Cube {i}", (2 * i, 0, 0), data=shared).color = (0, 0, i / 100, 1)
+        scenes.cube("Alone", (0, 2, 0), data=own)
+        extraction, occurrences = self.extract()
+        self.assertEqual(len(occurrences), 101)
+        grays = {"Shared": set(), "Own": set()}
+        for leaf in extraction.leaves:
+            grays[leaf.data].add(extraction.model.measure(leaf.object).color[0])
+        self.assertEqual(len(grays["Shared"]), object_random.GRADES)
+        (alone,) = grays["Own"]
+        self.assertAlmostEqual(alone, object_random.random_of("Alone"), delta=1e-6)
 
     def test_an_instance_has_the_color_of_its_instancer_also_the_second_one(self):
         shows = scenes.material("Shows")

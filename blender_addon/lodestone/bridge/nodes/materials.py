@@ -8,6 +8,7 @@ material: nothing turns gray silently. Cycles' picture counts: EEVEE's blend mod
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ...core import object_random
 from ...core.expression import color_expression as e
 from ...core.expression.color_expression import Expression, Op
 from ...core.native import lodestone_native as native
@@ -50,11 +51,11 @@ class Materials:
         self._indices: dict[tuple, int] = {}
         self._looks: dict[tuple, Look] = {}
         self._wanted: dict[tuple, Wanted] = {}
-        self._colored: dict[int, bool] = {}
+        self._varying: dict[int, tuple[bool, bool]] = {}
 
     def index(self, material: Any | None, color: Color | None = None) -> int:
         """The model's index of an evaluated material, or of Blender's default for None; `color` is
-        that (RGBA) of the object that shows it."""
+        that (RGBA, and perhaps Random) of the object that shows it."""
         key = self._key(material, color)
         if key not in self._indices:
             look = self.look(material, color)
@@ -82,17 +83,18 @@ class Materials:
         """True when its meshes keep their texture coordinates."""
         return self.look(material).coordinates is not None
 
-    def shows_object_color(self, material: Any | None) -> bool:
-        """Whether it looks different on objects of different colors."""
+    def varies(self, material: Any | None) -> tuple[bool, bool]:
+        """Whether it looks different on objects of different colors, and of different Random."""
         if material is None:
-            return False
+            return False, False
         self.look(material)
-        return self._colored[material.as_pointer()]
+        return self._varying[material.as_pointer()]
 
     def translate(self, material: Any, color: Color | None = None) -> Look:
         translator = _Translator(material, self._problems, self._pictures, self._frame, color)
         look = translator.look()
-        self._colored[material.as_pointer()] = translator.values.depends_on_color
+        values = translator.values
+        self._varying[material.as_pointer()] = values.depends_on_color, values.depends_on_random
         return look
 
     def _key(self, material: Any | None, color: Color | None) -> tuple:
@@ -101,7 +103,7 @@ class Materials:
         pointer = material.as_pointer()
         if color is not None and (pointer, None) not in self._looks:
             self.look(material)  # tells whether the color matters
-        return (pointer, color if self._colored.get(pointer) else None)
+        return (pointer, color if any(self._varying.get(pointer, ())) else None)
 
 
 class _Translator:
@@ -113,7 +115,8 @@ class _Translator:
         self.material = material
         self.problems = problems
         self.pictures = pictures
-        setting = Setting(frame, color, material.pass_index)
+        random = color[4] if color is not None and len(color) > 4 else object_random.MEAN
+        setting = Setting(frame, color and color[:4], material.pass_index, random)
         self.values = NodeExpressions(pictures, self.note, setting)
 
     def note(self, severity: str, code: str, text: str) -> None:

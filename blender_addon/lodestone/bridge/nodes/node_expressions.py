@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ...core.expression import node_math
+from ...core import object_random
 from ...core.expression import color_expression as e
 from ...core.expression.color_expression import Color, Expression, Op
 from ...core.native import lodestone_native as native
@@ -55,6 +56,7 @@ class Setting:
     frame: int = 1
     object_color: tuple[float, ...] | None = None  # RGBA; None: of no particular object
     material_index: int = 0
+    object_random: float = object_random.MEAN
 
 
 class NodeExpressions:
@@ -66,6 +68,7 @@ class NodeExpressions:
         self._setting = setting
         self._found: dict[tuple, Expression | None] = {}
         self.depends_on_color = False
+        self.depends_on_random = False
 
     def color(self, socket: Any, groups: tuple = (), depth: int = 0) -> Expression:
         """The socket's linear color; `groups` are the group nodes around it, outermost first."""
@@ -186,10 +189,15 @@ class NodeExpressions:
             return self._object_color(output.name == "Alpha")
         if output.name == "Material Index":
             return e.number(float(self._setting.material_index))
-        mean = 0.5 if output.name == "Random" else 0.0
-        text = f"Object Info's {output.name} is the same for all objects ({mean})"
+        if output.name == "Random":
+            self.depends_on_random = True
+            grades = object_random.GRADES
+            text = f"Object Info's Random has {grades} values among objects of one mesh"
+            self._note(INFO, "object_random", text)
+            return e.number(self._setting.object_random)
+        text = f"Object Info's {output.name} is the same for all objects (0)"
         self._note(WARNING, "object_info", text)
-        return e.number(mean, False)
+        return e.number(0.0, False)
 
     def _object_color(self, of_alpha: bool) -> Expression:
         self.depends_on_color = True

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ...core import stable_ids
+from ...core import object_random, stable_ids
 from ...core.native import lodestone_native as native
 from ...core.problems import ERROR, Problems
 from .. import datablock_ids
@@ -20,8 +20,16 @@ GREASE_PENCIL = "GPENCIL"  # Blender draws it over the picture of any engine
 HAIR = "hair"  # the hair of particles; also in the names of leaves
 POINT = "point"
 MOST_IN_PLACE = 1_000_000  # corners of meshes that are not copied: Blender keeps 12 MB for them
-Color = tuple[float, float, float, float]
+Color = tuple[float, ...]  # RGBA, and Random where any material shows it
+WHITE = (1.0, 1.0, 1.0, 1.0)
 MATERIAL = attrgetter("material")
+
+
+def _random_of(shown: Any, host: Any) -> float:
+    """Object Info's Random: one of a few values where many objects may share a mesh, for each has
+    levels of its own."""
+    value = object_random.random_of(name_of(shown), name_of(host) if host else "")
+    return value if shown.original.data.users == 1 and not host else object_random.graded(value)
 
 
 def undrawn(shown: Any) -> str | None:
@@ -77,7 +85,7 @@ class Leaves:
         self._uids = uids
         self._problems = problems
         self._materials = Materials(model, problems, frame=scene.frame_current)
-        self._varying: dict[tuple, tuple[bool, list | None]] = {}  # by materials
+        self._varying: dict[tuple, tuple[bool, bool, list | None]] = {}  # by materials
         self._black: int | None = None
         self._place: Any = None  # world matrix of the instance at hand
         self._in_place = MOST_IN_PLACE  # corners of meshes that may still be read where they are
@@ -115,7 +123,7 @@ class Leaves:
         slots = material_slots(shown, self.override)
         materials = tuple(material.as_pointer() if material else 0 for material in slots)
         place = shown.matrix_world if place is None else place
-        color, frames = self._seen_from(place, host or shown, slots, materials)
+        color, frames = self._seen_from(place, shown, host, slots, materials)
         key = (data, materials, color, frames, look)
         if key not in self._found:
             self._place = place
@@ -131,21 +139,23 @@ class Leaves:
         return self._found[key]
 
     def _seen_from(
-        self, place: Any, colored_by: Any, slots: list, materials: tuple
+        self, place: Any, shown: Any, host: Any, slots: list, materials: tuple
     ) -> tuple[Color | None, tuple | None]:
-        """The values of the object that its materials show: its color, and where it is seen from
-        others."""
+        """The values of the object that its materials show: its color and Random, and where it is
+        seen from others."""
         if materials not in self._varying:
             wanted = [self._materials.wanted(material) for material in slots]
+            varying = [self._materials.varies(material) for material in slots]
             self._varying[materials] = (
-                any(self._materials.shows_object_color(material) for material in slots),
+                any(by_color for by_color, _ in varying),
+                any(by_random for _, by_random in varying),
                 wanted if mesh_uvs.depend_on_place(wanted) else None,
             )
-        colored, wanted = self._varying[materials]
-        return (
-            tuple(colored_by.color) if colored else None,
-            mesh_uvs.frames(place, wanted) if wanted else None,
-        )
+        colored, random, wanted = self._varying[materials]
+        color = tuple((host or shown).color) if colored else None
+        if random:
+            color = (*(color or WHITE), _random_of(shown, host))
+        return color, mesh_uvs.frames(place, wanted) if wanted else None
 
     # ---- What they are made of ----
 
