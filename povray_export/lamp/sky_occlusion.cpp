@@ -37,7 +37,7 @@ public:
           options_(options),
           job_(job),
           bakes_(options.file, kSkyVersion),
-          all_(model, cut, options.most_triangles, job),
+          all_(model, cut, options.most_triangles, options.still, job),
           placements_(all_, options.uneven.get()),
           grounds_(all_),
           surfaces_(model,

@@ -24,6 +24,7 @@ inline constexpr std::string_view kSkyVersion = "LDSSKY02";
 struct SkyOcclusionOptions {
     int rays = 128;             // that tell the share of a corner, of a scene that is not large
     double pixels = kInfinity;  // of the picture: more triangles have fewer rays each
+    bool still = false;         // what moves in an animation rests
     /// The most distinct triangles of a scene that is looked through.
     /// Taste: a larger value shades larger scenes, for minutes and gigabytes.
     uint64_t most_triangles = 6'000'000;
@@ -50,7 +51,8 @@ struct SkyOcclusionOptions {
 /// which changes evenly over the thing. Boxes have the mean of their sides, or, where they are
 /// large in the picture, the light of each. Levels have the light of the outermost places near them
 /// of their finest level, and what stands in for a group that of all below it. What moves in an
-/// animation hides the sky from itself alone; where a ground lies below it, it sees no sky there.
+/// animation hides the sky from itself alone, so that no frame needs rays anew; where a ground lies
+/// below it, it sees no sky there. In a still picture it rests.
 class SkyOcclusion {
 public:
     /// Where rays cannot be cast or there is too much, nothing is occluded, and a problem says so.

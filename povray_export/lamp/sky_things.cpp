@@ -44,12 +44,12 @@ void hash_transform(Hasher& hasher, const Affine& world) {
 }
 
 SkyThings::SkyThings(const Model& model, const choose::Cut& cut, uint64_t most_triangles,
-                     const Job& job)
-    : model_(model), cut_(cut), job_(job) {
+                     bool still, const Job& job)
+    : model_(model), cut_(cut), still_(still), job_(job) {
     too_much_ = collect(most_triangles);
 }
 
-bool SkyThings::walk(ObjectIndex object, const Affine& world, RayMask hidden, bool moves) {
+bool SkyThings::walk(ObjectIndex object, const Affine& world, RayMask hidden, bool below) {
     // Groups that place nothing, twice in each other over and over, have no leaves.
     if ((++visits_ & 1023u) == 0)
         job_.check();
@@ -57,12 +57,12 @@ bool SkyThings::walk(ObjectIndex object, const Affine& world, RayMask hidden, bo
         leaves_.size() >= kMostLeaves)
         return false;
     const Object& here = model_.objects[object];
-    moves = moves || here.deforms;
+    const bool moving = below || moves(here);
     if (here.representations.empty())
         return true;
     const Representation& finest = here.representations[0];
     if (finest.summary.kind != Kind::Assembly) {
-        SkyLeaf leaf{object, world, !moves && (hidden & kShadowRays) == 0};
+        SkyLeaf leaf{object, world, !moving && (hidden & kShadowRays) == 0};
         leaf.hides = make_invertible(leaf.world) && leaf.hides;  // as it is drawn
         leaves_.push_back(leaf);
         return true;
@@ -71,7 +71,7 @@ bool SkyThings::walk(ObjectIndex object, const Affine& world, RayMask hidden, bo
         return true;
     for (const Placement& placement : finest.assembly().placements) {
         if (!walk(placement.object, world * placement.transform,
-                  static_cast<RayMask>(hidden | placement.hidden), moves))
+                  static_cast<RayMask>(hidden | placement.hidden), moving))
             return false;
     }
     return true;
@@ -79,11 +79,11 @@ bool SkyThings::walk(ObjectIndex object, const Affine& world, RayMask hidden, bo
 
 std::string SkyThings::collect(uint64_t most_triangles) {
     // Whether a node is below something that moves, for parents come before children.
-    std::vector<uint8_t> moves(cut_.nodes.size(), 0);
+    std::vector<uint8_t> moving(cut_.nodes.size(), 0);
     for (size_t i = 0; i < cut_.nodes.size(); ++i) {
         const choose::CutNode& node = cut_.nodes[i];
-        const bool above = node.parent != choose::kNoParent && moves[node.parent] != 0;
-        moves[i] = above || model_.objects.at(node.object).deforms ? 1 : 0;
+        const bool above = node.parent != choose::kNoParent && moving[node.parent] != 0;
+        moving[i] = above || moves(model_.objects.at(node.object)) ? 1 : 0;
     }
     for (const uint32_t index : cut_.chosen) {
         if ((things_.size() & 1023u) == 0)
@@ -94,7 +94,7 @@ std::string SkyThings::collect(uint64_t most_triangles) {
         thing.representation = &object.representations.at(node.lod);
         thing.world = cut_.world(node);
         thing.seen = make_invertible(thing.world);
-        thing.moves = moves[index] != 0;
+        thing.moves = moving[index] != 0;
         thing.group = object.group();
         thing.first = static_cast<uint32_t>(leaves_.size());
         if (!walk(node.object, cut_.world(node), node.hidden, thing.moves))

@@ -35,8 +35,9 @@ void hash_transform(Hasher& hasher, const Affine& world);
 /// The things of a cut, and all that is placed. Model, cut and job must outlive it.
 class SkyThings {
 public:
-    /// Throws Error(Cancelled).
-    SkyThings(const Model& model, const choose::Cut& cut, uint64_t most_triangles, const Job& job);
+    /// `still`: what moves in an animation rests. Throws Error(Cancelled).
+    SkyThings(const Model& model, const choose::Cut& cut, uint64_t most_triangles, bool still,
+              const Job& job);
 
     /// How much is too much; "" when it is not.
     const std::string& too_much() const { return too_much_; }
@@ -68,13 +69,15 @@ private:
     };
 
     std::string collect(uint64_t most_triangles);
-    bool walk(ObjectIndex object, const Affine& world, RayMask hidden, bool moves);
+    bool moves(const Object& object) const { return !still_ && object.deforms; }
+    bool walk(ObjectIndex object, const Affine& world, RayMask hidden, bool below);
     /// Finds the meshes whose copies all have shares of their own: those of few placements, and
     /// of the others the smallest.
     void choose_copied();
 
     const Model& model_;
     const choose::Cut& cut_;
+    bool still_;
     const Job& job_;
     std::string too_much_;
     std::vector<SkyLeaf> leaves_;

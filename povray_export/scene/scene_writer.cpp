@@ -129,10 +129,9 @@ private:
     void find_sky_light() {
         if (options_.covered_only)
             return;
-        // Taste: a name that says what it is to who finds it.
-        constexpr const char* kFile = "sky_light.bin";
         SkyOcclusionOptions wanted;
-        wanted.file = (options_.bakes.empty() ? options_.folder : options_.bakes) / kFile;
+        wanted.file = (options_.bakes.empty() ? options_.folder : options_.bakes) / "sky_light.bin";
+        wanted.still = options_.still;
         wanted.load_finest = options_.load_finest;
         wanted.needs = &needs_;
         wanted.pixels = static_cast<double>(view_.width) * view_.height;

@@ -27,10 +27,10 @@ protected:
 
     static Affine at(double x, double y, double z) { return {glm::dmat3(1.0), {x, y, z}}; }
     /// The share of the sky's light on each object, in the mean.
-    std::map<ObjectIndex, double> means() {
+    std::map<ObjectIndex, double> means(const SkyOcclusionOptions& options = {}) {
         const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
         Problems problems;
-        const SkyOcclusion light(builder.model, cut, {}, problems, {});
+        const SkyOcclusion light(builder.model, cut, options, problems, {});
         std::map<ObjectIndex, double> out;
         for (const uint32_t node : cut.chosen)
             out[cut.nodes[node].object] = light.mean_of_node(node)->factor;
@@ -56,6 +56,25 @@ TEST_F(SkyOnWhatMoves, WhatMovesHidesTheSkyFromItselfAlone) {
         if (cut.nodes[cut.chosen[i]].object == floor) {
             EXPECT_EQ(light.of(i)->shares->mean, 1);
         }
+    }
+}
+
+// Crates with rigid bodies stood on a floor without any shade around them.
+TEST_F(SkyOnWhatMoves, InAStillPictureWhatMovesIsAsWhatRests) {
+    const ObjectIndex floor = builder.mesh(shapes::quad(4, 4));
+    const ObjectIndex crate = builder.mesh(shapes::box({-1, -1, 0}, {1, 1, 1}));
+    const ObjectIndex above = builder.mesh(shapes::box({-.5, -.5, 1}, {.5, .5, 2}));
+    builder.place(floor, at(-2, -2, 0));
+    builder.place(crate);
+    builder.place(above);
+    SkyOcclusionOptions still;
+    still.still = true;
+    const std::map<ObjectIndex, double> resting = means();
+    EXPECT_LT(resting.at(floor), .95);
+    for (const ObjectIndex moving : {crate, above}) {
+        builder.model.objects[moving].deforms = true;
+        EXPECT_NE(means(), resting);
+        EXPECT_EQ(means(still), resting);
     }
 }
 

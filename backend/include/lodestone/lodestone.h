@@ -1156,6 +1156,9 @@ typedef struct lds_povray_options {
                            pictures of more than 67 million pixels */
     const char* bake_folder; /* a folder that keeps what such rays found, for the next
                                 picture: that of the store; null: the scene's own folder */
+    int32_t still; /* 1: a picture alone: what moves in an animation shades what is around it, and
+                      is shaded, as if it rested. Usual 0: so that no frame needs rays anew, it
+                      hides the sky from itself alone */
 } lds_povray_options;
 LDS_API lds_status lds_povray_options_default(lds_povray_options* options);
 

@@ -57,6 +57,7 @@ class PovrayOptions:
     sky_rays: int = 0
     filter_size: float = 0.0
     bake_folder: str | None = None  # keeps what sky_rays found; None: the scene's folder
+    still: bool = False  # a picture alone: the sky lights what moves in an animation as what rests
 
     def struct(self) -> structs.PovrayOptions:
         out = structs.PovrayOptions()
@@ -64,6 +65,7 @@ class PovrayOptions:
         out.antialias = self.antialias
         out.false_color = int(self.false_color)
         out.covered_only = int(self.covered_only)
+        out.still = int(self.still)
         out.threads = self.threads
         out.program = text_in(self.program or None)
         out.bake_folder = text_in(self.bake_folder)

@@ -144,6 +144,7 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         wanted.false_color = given.false_color != 0;
         wanted.colors = cut->colors;
         wanted.covered_only = given.covered_only != 0;
+        wanted.still = given.still != 0;
         wanted.margin = image::spread_reach(spread_of(given));
         if (std::isnan(given.light_error))
             fail(Status::InvalidArgument, "options.light_error is not a number");

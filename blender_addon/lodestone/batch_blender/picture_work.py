@@ -64,6 +64,7 @@ class BlenderPictureWork:
             program=job.program,
             filter_size=scene.render.filter_size,
             bakes=str(store),
+            still=not job.frames,
         )
         self.new_job = work.new_job
         self.problems = Problems()

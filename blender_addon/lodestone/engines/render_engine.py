@@ -161,6 +161,7 @@ class _Run:
             program=preferences.povray_program(),
             filter_size=self.scene.render.filter_size,
             bakes=str(self.store),
+            still=not engine.is_animation,
         )
         self.problems = Problems()
         self.problems.extend(getattr(engine, "lodestone_libraries", ()))

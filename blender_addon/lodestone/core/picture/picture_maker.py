@@ -38,6 +38,7 @@ class Settings:
     program: str = ""  # POV-Ray; "": $LODESTONE_POVRAY, else the PATH
     filter_size: float = 0.0  # pixels; Blender's Filter Size. 0: each pixel is what it covers
     bakes: str = ""  # the folder that keeps what was found of the sky's light; "": the scene's
+    still: bool = False  # a picture alone, in which what moves in an animation rests
     border: tuple[int, int, int, int] = (0, 0, 0, 0)  # left, top, width, height; width 0: all
 
     @property
@@ -67,6 +68,7 @@ class Settings:
             program=self.program,
             bake_folder=self.bakes or None,
             filter_size=self.filter_size,
+            still=self.still,
         )
 
     def view(self, camera: native.Camera, size: tuple[int, int]) -> native.View:
@@ -92,7 +94,7 @@ class Settings:
         """The text in a picture's file about how it was made: the version, the Pixel Error, and a
         hash of all settings that show in the picture."""
         own = (*self.quality, self.budget, self.false_color, self.covered_only, self.filter_size)
-        shown = (*own, *bent_by(self.modifiers))
+        shown = (*own, self.still, *bent_by(self.modifiers))
         return {
             "Lodestone": native.version(),
             "Lodestone Pixel Error": f"{self.pixel_error:g}",
