@@ -17,6 +17,13 @@ constexpr size_t kMostGrounds = 64;
 // Taste: a smaller value takes tables for grounds.
 constexpr double kWider = 3;
 
+// Of them, those that are looked below.
+// Taste: a larger value finds floors of more rooms, for a test of each thing.
+constexpr size_t kMostFloors = 8;
+// The widths of a floor in its height, at least.
+// Taste: a smaller value takes blocks for floors.
+constexpr double kFlat = 8;
+
 double width_of(const Box3& box) {
     return std::min(box.size().x, box.size().y);
 }
@@ -34,6 +41,26 @@ SkyGrounds::SkyGrounds(const SkyThings& all) {
     std::partial_sort(grounds_.begin(), grounds_.begin() + static_cast<std::ptrdiff_t>(kept),
                       grounds_.end(), wider);
     grounds_.resize(kept);
+    std::copy_if(grounds_.begin(),
+                 grounds_.begin() + static_cast<std::ptrdiff_t>(std::min(kept, kMostFloors)),
+                 std::back_inserter(floors_),
+                 [](const Box3& ground) { return ground.size().z * kFlat <= width_of(ground); });
+    for (const SkyLeaf& leaf : all.leaves()) {
+        if (floors_.empty() || !leaf.hides)
+            continue;
+        const Box3 box = transformed(all.finest_of(leaf).summary.bound, leaf.world).box;
+        std::erase_if(floors_, [&](const Box3& floor) {
+            return box.center().z < floor.low.z && box.low.x < floor.high.x &&
+                   box.high.x > floor.low.x && box.low.y < floor.high.y && box.high.y > floor.low.y;
+        });
+    }
+}
+
+bool SkyGrounds::is_floor(const SkyThing& thing) const {
+    const Box3 box = transformed(thing.representation->summary.bound, thing.world).box;
+    return std::any_of(floors_.begin(), floors_.end(), [&](const Box3& floor) {
+        return floor.low == box.low && floor.high == box.high;
+    });
 }
 
 light::SkyHorizon SkyGrounds::horizon(const SkyThing& thing) const {

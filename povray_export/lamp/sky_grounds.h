@@ -18,9 +18,13 @@ public:
     /// The sky below a thing, by its axis that is nearest to the vertical: none above a ground that is
     /// several times as wide, all of it elsewhere.
     light::SkyHorizon horizon(const SkyThing& thing) const;
+    /// Whether a thing is flat, wide, and has nothing that hides the sky below it: nobody sees what
+    /// comes through its edges.
+    bool is_floor(const SkyThing& thing) const;
 
 private:
     std::vector<Box3> grounds_;  // world, the widest one first
+    std::vector<Box3> floors_;   // of them
 };
 
 }  // namespace lodestone::povray

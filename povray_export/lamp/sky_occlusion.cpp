@@ -115,6 +115,8 @@ private:
         if (placed != nullptr) {
             hasher.value(all_.scene()).value(summary.max_error).value(all_.splits_of(*placed));
             hash_transform(hasher, placed->world);
+            if (grounds_.is_floor(*placed))
+                hasher.value(true);
         }
         return hasher.result();
     }
@@ -328,6 +330,7 @@ private:
             request.world = wanted.placed->world;
             request.around = &*around_;
             request.splits = all_.splits_of(*wanted.placed);
+            request.floor = grounds_.is_floor(*wanted.placed);
         }
         wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
     }

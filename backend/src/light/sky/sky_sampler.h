@@ -23,9 +23,9 @@ struct SkyRequest {
     /// Metres, own frame: how far the surface may lie from its finest level, or from what it stands
     /// in for.
     double error = 0;
-    int rays = 128;     // about so many tell the share of a corner
-    size_t splits = 0;  // about how many triangles splits may add
-    int most_rays = 0;  // as `rays`, where triangles are larger than the mean; fewer: none more
+    int rays = 128;      // about so many tell the share of a corner
+    size_t splits = 0;   // about how many triangles splits may add
+    int most_rays = 0;   // as `rays`, where triangles are larger than the mean; fewer: none more
     /// The finest level of the surface, or all that it stands for, in its frame: rays begin at the
     /// places of it that the level shows, for it lies behind some of its boards and before others.
     /// Null: it is the finest one, or there is none.
@@ -40,6 +40,9 @@ struct SkyRequest {
     /// The sky by direction; of a surface alone, whose placements may be turned, by height where all
     /// of them are upright. Null: it is the same everywhere.
     const UnevenSky* uneven = nullptr;
+    /// Whether it is the floor of all: nobody sees what is below it, so it is split if it is a box,
+    /// too.
+    bool floor = false;
 };
 
 /// Sums over rays of the light of an uneven sky, in parts of its color.

@@ -27,8 +27,8 @@ constexpr double kStep = 0.1;
 // The share of the triangles to be added that long edges get, before anything is known.
 // Taste: a larger value finds smaller things on a large ground, and follows their shade less.
 constexpr double kLongShare = 0.25;
-// Closed meshes of up to so many triangles stay as they are: POV-Ray lets light through the edges
-// of finer walls.
+// Closed meshes of up to so many triangles stay as they are, unless they are the floor of all:
+// POV-Ray lets light through the edges of finer walls.
 // Law: the writer for POV-Ray writes all meshes of so few triangles without a tree.
 constexpr size_t kFew = 16;
 // The share of an edge's length in its triangle's longest from which it is split with it.
@@ -61,7 +61,8 @@ public:
         sampler_.note_closed(request_.original != nullptr ? closed(*request_.original->mesh)
                                                           : is_closed);
         const bool may_split =
-            request_.splits > 0 && (split_.mesh().triangles.size() > kFew || !is_closed);
+            request_.splits > 0 &&
+            (request_.floor || split_.mesh().triangles.size() > kFew || !is_closed);
         const double longest = sampler_.size() / kPartsOfMesh;
         const SkyShares* known = request_.known;
         const size_t long_rounds = known != nullptr ? known->long_rounds : 0;
