@@ -3,6 +3,7 @@
 it, the same ones in every frame, or as it is."""
 
 import json
+import re
 import tempfile
 import unittest
 from pathlib import Path
@@ -340,6 +341,35 @@ class Followed(unittest.TestCase):
         used = addon_session().renders.get(scene.name)
         self.assertEqual(used.triangles_placed, 1280)
         self.assertLess(used.triangles, 200)
+
+
+class Shaded(unittest.TestCase):
+    """What moves on a floor: in a still picture it shades it, in frames it does not."""
+
+    def shares(self, **how):
+        """The shares of the sky's light that the scene of POV-Ray names."""
+        scene = scenes.fresh()
+        with tempfile.TemporaryDirectory() as folder:
+            scene.world = bpy.data.worlds.new("World")
+            scenes.link(
+                bpy.data.objects.new(
+                    "Floor", scenes.mesh("Floor", [(-9, -9, 0), (9, -9, 0), (0, 9, 0)], [(0, 1, 2)])
+                )
+            )
+            keyed(scenes.cube("Crate", size=3.0), (0, 0, 1.5), (1, 0, 1.5))
+            scene.render.engine = "LODESTONE_POVRAY"
+            scene.render.resolution_x = scene.render.resolution_y = 16
+            scene.render.filepath = folder + "/"
+            scene.frame_start = scene.frame_end = scene.frame_current
+            scene.lodestone.keep_scene_files = "ALWAYS"
+            bpy.ops.wm.save_as_mainfile(filepath=folder + "/shaded.blend")
+            bpy.ops.render.render(**how)
+            texts = [path.read_text() for path in Path(folder).glob("lodestone/**/*.inc")]
+            return {share for text in texts for share in re.findall(r"ambient rgb <[^>]*>", text)}
+
+    def test_a_still_picture_has_the_shade_that_frames_have_not(self):
+        still, frame = self.shares(), self.shares(animation=True)
+        self.assertGreater(len(still), len(frame) + 3)
 
 
 if __name__ == "__main__":
