@@ -1126,7 +1126,8 @@ typedef struct lds_povray_options {
     /* How finely the picture is shaded; 0 is the usual value. Larger errors are cheaper. */
     double antialias_threshold; /* FINAL: difference of neighbors that adds samples; usual 0.1 */
     int32_t antialias_depth;    /* FINAL: n, for n x n samples in such a pixel; usual 3 */
-    int32_t trace_depth;        /* most mirrors and glass bodies one behind the other; usual 5 */
+    int32_t trace_depth;        /* most mirrors and glass bodies one behind the other, fewer where
+                                   the next one could not show; usual 5 */
     int32_t area_samples; /* shadow rays along the edge of a lamp, made 2^n + 1; 1: sharp shadows;
                              usual 17, with OFF 1 */
     int32_t sky_lights;   /* the most lights that stand for the peaks of an environment image, or,
@@ -1146,19 +1147,19 @@ typedef struct lds_povray_options {
     int32_t bounce_rays;     /* rays that gather indirect light; usual 200, OFF 60, REFERENCE 800 */
     double bounce_error;     /* 0...1: how far gathered light is interpolated; usual 0.6, with OFF
                                 1, with REFERENCE 0.4 */
-    int32_t sky_rays;   /* rays by which each corner of a mesh finds how much of the sky's uniform
+    int32_t sky_rays; /* rays by which each corner of a mesh finds how much of the sky's uniform
                            light reaches it, half as many where triangles are small, up to
                            1024; below 0: all of it reaches everything; usual 128, with OFF none.
                            Nothing with bounces, which do it */
+    int32_t still; /* 1: a picture alone: what moves in an animation shades what is around it, and
+                      is shaded, as if it rested. Usual 0: so that no frame needs rays anew, it
+                      hides the sky from itself alone */
     double filter_size; /* pixels: of the Blackman-Harris filter that blurs the picture, as Cycles'
                            and Eevee's do (usually 1.5 there); usual 0: each pixel is what its
                            square shows. Never where false_color or covered_only is set, nor in
                            pictures of more than 67 million pixels */
     const char* bake_folder; /* a folder that keeps what such rays found, for the next
                                 picture: that of the store; null: the scene's own folder */
-    int32_t still; /* 1: a picture alone: what moves in an animation shades what is around it, and
-                      is shaded, as if it rested. Usual 0: so that no frame needs rays anew, it
-                      hides the sky from itself alone */
 } lds_povray_options;
 LDS_API lds_status lds_povray_options_default(lds_povray_options* options);
 
