@@ -17,7 +17,7 @@ constexpr size_t kMostGrounds = 64;
 // Taste: a smaller value takes tables for grounds.
 constexpr double kWider = 3;
 
-// Of them, those that are looked below.
+// Grounds that are looked below.
 // Taste: a larger value finds floors of more rooms, for a test of each thing.
 constexpr size_t kMostFloors = 8;
 // The widths of a floor in its height, at least.

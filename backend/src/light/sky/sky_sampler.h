@@ -23,9 +23,9 @@ struct SkyRequest {
     /// Metres, own frame: how far the surface may lie from its finest level, or from what it stands
     /// in for.
     double error = 0;
-    int rays = 128;      // about so many tell the share of a corner
-    size_t splits = 0;   // about how many triangles splits may add
-    int most_rays = 0;   // as `rays`, where triangles are larger than the mean; fewer: none more
+    int rays = 128;     // about so many tell the share of a corner
+    size_t splits = 0;  // about how many triangles splits may add
+    int most_rays = 0;  // as `rays`, where triangles are larger than the mean; fewer: none more
     /// The finest level of the surface, or all that it stands for, in its frame: rays begin at the
     /// places of it that the level shows, for it lies behind some of its boards and before others.
     /// Null: it is the finest one, or there is none.
