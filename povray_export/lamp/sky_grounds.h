@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sky grounds: what hides the sky below a thing that moves, without a ray.
+// Sky grounds: what hides the sky below a thing that moves, without a ray; and which ground is the
+// floor of all.
 #pragma once
 
 #include "light/sky/sky_horizon.h"

@@ -410,6 +410,11 @@ double mean_mirror(const Material& material, bool uvs) {
     return std::max(mean, material.other ? mean_mirror(*material.other, uvs) : 0.0);
 }
 
+/// Whether rays go on through the surface itself, whatever it is mixed with.
+bool goes_through(const Material& material) {
+    return material.alpha_mode != AlphaMode::Opaque || share(material.transmission, 0) > 0;
+}
+
 }  // namespace
 
 std::string texture_text(const Material& material, const TexturedSurface& surface,
@@ -427,15 +432,15 @@ bool may_mirror(const Material& material, bool uvs) {
 }
 
 bool rays_go_on(const Material& material, bool uvs) {
-    return material.alpha_mode != AlphaMode::Opaque || share(material.transmission, 0) > 0 ||
-           may_mirror(material, uvs) || (material.other && rays_go_on(*material.other, uvs));
+    return goes_through(material) || may_mirror(material, uvs) ||
+           (material.other && rays_go_on(*material.other, uvs));
 }
 
 void add_onward(const Material& material, OnwardRays& rays) {
     rays.mirrored = std::max(rays.mirrored, mean_mirror(material, true));
     rays.refracted = rays.refracted || refraction_of(material) > 0;
     for (const Material* one = &material; one != nullptr; one = one->other.get())
-        rays.clear = rays.clear || one->alpha_mode != AlphaMode::Opaque;
+        rays.clear = rays.clear || goes_through(*one);
 }
 
 double refraction_of(const Material& material) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the beginning of a scene: as many surfaces one behind the other as show.
 #include "povray_export/scene/scene_head.h"
+#include "scenes/small_models.h"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -12,13 +13,10 @@ using namespace lodestone::povray;
 namespace {
 
 Material plain() {
-    Material out;
-    out.roughness = 1;
-    return out;
+    return models::colored("plain", glm::dvec3(0.8), 1);
 }
 Material polished(double specular) {
-    Material out;
-    out.roughness = 0;
+    Material out = models::colored("polished", glm::dvec3(0.8), 0);
     out.specular = specular;
     return out;
 }
@@ -72,6 +70,10 @@ TEST(SceneHead, WhatRaysGoOnThroughNeedsTheirLevelOnceMore) {
     EXPECT_EQ(levels({clear(plain()), polished(1)}), 4);
     EXPECT_EQ(levels({clear(metal())}), 5);
     EXPECT_EQ(levels({glass()}), 10);
+    Material straight = glass();
+    straight.ior = std::numeric_limits<double>::infinity();
+    straight.roughness = 1;
+    EXPECT_EQ(levels({straight}), 2);
     EXPECT_EQ(levels({plain()}, 5, 1, 2), 5);  // light between surfaces is found by rays, too
 }
 

@@ -1148,9 +1148,9 @@ typedef struct lds_povray_options {
     double bounce_error;     /* 0...1: how far gathered light is interpolated; usual 0.6, with OFF
                                 1, with REFERENCE 0.4 */
     int32_t sky_rays; /* rays by which each corner of a mesh finds how much of the sky's uniform
-                           light reaches it, half as many where triangles are small, up to
-                           1024; below 0: all of it reaches everything; usual 128, with OFF none.
-                           Nothing with bounces, which do it */
+                         light reaches it, half as many where triangles are small, up to 1024; below
+                         0: all of it reaches everything; usual 128, with OFF none. Nothing with
+                         bounces, which do it */
     int32_t still; /* 1: a picture alone: what moves in an animation shades what is around it, and
                       is shaded, as if it rested. Usual 0: so that no frame needs rays anew, it
                       hides the sky from itself alone */

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from ...core.expression import node_math
 from ...core import object_random
+from ...core.expression import node_math
 from ...core.expression import color_expression as e
 from ...core.expression.color_expression import Color, Expression, Op
 from ...core.native import lodestone_native as native
