@@ -2,13 +2,6 @@
 #include "povray_export/lamp/scene_sky.h"
 
 namespace lodestone::povray {
-namespace {
-
-// The pixels across from which on the sides of a box have their own light of the sky.
-// Taste: a smaller value shades smaller boxes, for twenty times the text of each.
-constexpr double kSidesShow = 8;
-
-}  // namespace
 
 SceneSky::SceneSky(const Model& model, const Shading& shading, bool lit,
                    const std::filesystem::path& folder, Problems& problems)
@@ -36,8 +29,8 @@ bool SceneSky::find_light(const choose::Cut& cut, SkyOcclusionOptions options,
         return true;
     options.rays = shading_.sky_rays;
     options.uneven = written_.uneven;
-    options.sides_show = [&pixels](const Bound& bound) {
-        return 2 * bound.radius >= kSidesShow * pixels.at(bound);
+    options.pixels_across = [&pixels](const Bound& bound) {
+        return 2 * bound.radius / pixels.at(bound);
     };
     light_.emplace(model_, cut, options, problems_, job);
     if (light_->found() || !written_.uneven)

@@ -6,6 +6,7 @@
 #include "light/sky/joined_surface.h"
 #include "povray_export/lamp/corner_rays.h"
 #include "povray_export/lamp/placement_means.h"
+#include "povray_export/lamp/seen_sides.h"
 #include "povray_export/lamp/sky_grounds.h"
 #include "povray_export/lamp/sky_things.h"
 
@@ -20,7 +21,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 19;
+constexpr uint32_t kBakeVersion = 20;
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
@@ -28,6 +29,10 @@ constexpr double kMostSeen = 0.6;
 // Taste: a larger value has more noise on leaves and small things, where it is seen least, for fewer
 // rays.
 constexpr int kOfLargest = 2;
+
+// The pixels across from which on the sides of a box have their own light of the sky.
+// Taste: a smaller value shades smaller boxes, for twenty times the text of each.
+constexpr double kSidesShow = 8;
 
 class SkyPlanner {
 public:
@@ -47,6 +52,9 @@ public:
     std::string run() {
         if (!all_.too_much().empty())
             return "There is too much in the scene to find what hides the sky: " + all_.too_much();
+        if (options_.camera != nullptr)
+            own_ = all_.largest_copies(
+                [this](size_t i) { return shown(i) ? pixels_across(all_.things()[i]) : 0; });
         find_wanted();
         choose_rays();
         placements_.find(bakes_);
@@ -91,6 +99,8 @@ private:
         Hash key = 0;                              // where it is kept
         /// By triangle, 1: any of the things shows it. Empty: all count as shown.
         std::vector<uint8_t> seen;
+        SeenSides sides;
+        std::vector<uint8_t> behind;                    // by triangle, 1: its back is seen
         int rays = 0;                                   // of a corner
         int whole_rays = 0;                             // the same where all of it is seen
         uint64_t work = 0;                              // about, for progress
@@ -109,7 +119,7 @@ private:
         hasher.value(kBakeVersion).value(options_.rays);
         hasher.value(options_.uneven ? options_.uneven->hash() : 0);
         hasher.value(summary.hash).value(all_.finest_of(thing).summary.hash);
-        hasher.value(summary.cost.triangles).value(thing.moves);
+        hasher.value(summary.cost.triangles).value(thing.moves).value(options_.camera != nullptr);
         if (thing.moves)
             hash_horizon(hasher, grounds_.horizon(thing));
         if (placed != nullptr) {
@@ -125,8 +135,18 @@ private:
     bool has_corners(const SkyThing& thing) const {
         const RepresentationSummary& summary = thing.representation->summary;
         return summary.kind == Kind::Mesh ||
-               (summary.kind == Kind::Box && options_.sides_show &&
-                options_.sides_show(transformed(summary.bound, thing.world)));
+               (summary.kind == Kind::Box && pixels_across(thing) >= kSidesShow);
+    }
+    double pixels_across(const SkyThing& thing) const {
+        return options_.pixels_across ? options_.pixels_across(transformed(
+                                            thing.representation->summary.bound, thing.world))
+                                      : 0;
+    }
+
+    /// Whether a picture shows anything of a thing.
+    bool shown(size_t i) const {
+        return !all_.skipped(all_.things()[i]) &&
+               (options_.needs == nullptr || options_.needs->seen(i));
     }
 
     /// The triangles whose corners have shares.
@@ -142,10 +162,10 @@ private:
         means_of_.resize(all_.things().size(), {nullptr, 0});
         for (size_t i = 0; i < all_.things().size(); ++i) {
             const SkyThing& thing = all_.things()[i];
-            if (all_.skipped(thing) || (options_.needs != nullptr && !options_.needs->seen(i)))
+            if (!shown(i))
                 continue;
             const bool cornered = has_corners(thing);
-            const bool once = cornered && all_.in_place(thing);
+            const bool once = cornered && ((!own_.empty() && own_[i] != 0) || all_.in_place(thing));
             if (cornered)
                 shares_of_[i] = want_shares(thing, once);
             if (shares_of_[i] != nullptr)
@@ -195,6 +215,12 @@ private:
             if ((needs[k] & light::kSeen) != 0)
                 wanted.seen[k] = 1;
         }
+        const SkyThing& thing = all_.things()[i];
+        const Representation& drawn = *thing.representation;
+        if (options_.camera != nullptr && drawn.summary.kind == Kind::Mesh && drawn.resident())
+            wanted.sides.add(drawn.mesh(), thing.world,
+                             transformed(drawn.summary.bound, thing.world), *options_.camera,
+                             needs);
     }
 
     /// The triangles of a surface that count as seen.
@@ -209,6 +235,7 @@ private:
         std::vector<uint64_t> counts;
         std::vector<uint64_t> all;
         for (auto& [key, wanted] : wanted_shares_) {
+            wanted.behind = wanted.sides.behind();
             all.push_back(triangles_of(*wanted.representation));
             if (static_cast<double>(seen_of(wanted)) >
                 kMostSeen * static_cast<double>(wanted.seen.size()))
@@ -240,7 +267,7 @@ private:
             const int rays =
                 wanted.found->seen.empty() ? std::min(wanted.rays, wanted.whole_rays) : wanted.rays;
             if (wanted.found->rays >= static_cast<uint32_t>(rays) &&
-                light::covers(*wanted.found, wanted.seen)) {
+                light::covers(*wanted.found, wanted.seen, wanted.behind)) {
                 kept_work_ += wanted.work;
                 return;
             }
@@ -323,6 +350,7 @@ private:
         request.error = wanted.representation->summary.max_error;
         request.original = original;
         request.seen = wanted.seen;
+        request.behind = wanted.behind;
         request.known = wanted.found.get();
         request.horizon = horizon_of(wanted);
         request.uneven = options_.uneven.get();
@@ -421,7 +449,8 @@ private:
     std::optional<light::SkyScene> around_;
     std::map<Hash, WantedShares> wanted_shares_;
     std::vector<WantedShares*> missing_;
-    uint64_t kept_work_ = 0;                                             // of shares that were kept
+    uint64_t kept_work_ = 0;    // of shares that were kept
+    std::vector<uint8_t> own_;  // by thing, 1: a copy that has shares of its own. Empty: none
     std::vector<WantedShares*> shares_of_;                               // by thing
     std::vector<std::pair<const MeansOfPlacements*, size_t>> means_of_;  // by thing
     std::vector<SkyLightPtr> lights_;

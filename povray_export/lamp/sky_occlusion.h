@@ -18,13 +18,16 @@ namespace lodestone::povray {
 
 /// The beginning of the file that keeps it.
 /// Law: another one is another format.
-inline constexpr std::string_view kSkyVersion = "LDSSKY02";
+inline constexpr std::string_view kSkyVersion = "LDSSKY03";
 
 /// The choices for sky occlusion.
 struct SkyOcclusionOptions {
     int rays = 128;             // that tell the share of a corner, of a scene that is not large
     double pixels = kInfinity;  // of the picture: more triangles have fewer rays each
     bool still = false;         // what moves in an animation rests
+    /// The camera of a picture alone: what is opaque has the light of the side that it sees, and the
+    /// largest copies that of where they stand. Null: nothing changes as the camera moves.
+    const Camera* camera = nullptr;
     /// The most distinct triangles of a scene that is looked through.
     /// Taste: a larger value shades larger scenes, for minutes and gigabytes.
     uint64_t most_triangles = 6'000'000;
@@ -36,9 +39,9 @@ struct SkyOcclusionOptions {
     /// The needs of the picture: the sky's light is not found on things that it does not show.
     /// Null: it shows all.
     const PictureNeeds* needs = nullptr;
-    /// Whether a box (world) is so large in the picture that its sides show what each of them has of
-    /// the sky. Null: boxes have the mean of their sides.
-    std::function<bool(const Bound&)> sides_show;
+    /// How many pixels of the picture something (world) is across. Null: as if it were small, so that
+    /// boxes have the mean of their sides.
+    std::function<double(const Bound&)> pixels_across;
     /// Makes the finest level of everything resident; asked for only where something is to be
     /// found that was not kept.
     std::function<void()> load_finest;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/lamp/sky_things.h"
 
+#include "light/clear_materials.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/scene/invertible_transform.h"
 
@@ -14,6 +15,9 @@ namespace {
 // Taste: a larger value shades small things more truly, for a copy of the mesh each.
 constexpr double kCopiedShare = 0.25;
 constexpr double kCopiedTriangles = 5000;  // Taste: as kCopiedShare
+// The pixels across from which on a copy may have shares of its own because of a picture.
+// Taste: a smaller value shades smaller copies more truly, for a mesh each.
+constexpr double kCopyShows = 24;
 // The triangles that splits may add: a share of those of all distinct meshes, and some more.
 // Taste: a larger value draws sharper shade on large faces, for memory and parsing of each.
 constexpr double kSplitShare = 0.25;
@@ -145,13 +149,17 @@ void SkyThings::choose_copied() {
             order.emplace_back(mesh.count * mesh.triangles, hash);
     }
     std::sort(order.begin(), order.end());
-    double rest = kCopiedTriangles + kCopiedShare * static_cast<double>(triangles_);
+    double rest = triangles_of_copies();
     for (const auto& [triangles, hash] : order) {
         rest -= static_cast<double>(triangles);
         if (rest < 0)
             break;
         placed_[hash].copied = true;
     }
+}
+
+double SkyThings::triangles_of_copies() const {
+    return kCopiedTriangles + kCopiedShare * static_cast<double>(triangles_);
 }
 
 bool SkyThings::in_place(const SkyThing& thing) const {
@@ -161,6 +169,39 @@ bool SkyThings::in_place(const SkyThing& thing) const {
         return stand_ins_.at(thing.representation->summary.hash) == 1;
     const PlacedMesh& mesh = placed_.at(finest_of(leaves_[thing.first]).summary.hash);
     return mesh.count <= kPlacementGrades || mesh.copied;
+}
+
+bool SkyThings::clear(const Representation& representation) const {
+    return std::any_of(representation.materials.begin(), representation.materials.end(),
+                       [this](uint32_t number) {
+                           return number < model_.materials.size() &&
+                                  light::lets_light_through(model_.materials[number]);
+                       });
+}
+
+std::vector<uint8_t> SkyThings::largest_copies(const std::function<double(size_t)>& pixels) const {
+    std::vector<std::pair<double, size_t>> order;
+    for (size_t i = 0; i < things_.size(); ++i) {
+        const SkyThing& thing = things_[i];
+        if (thing.representation->summary.kind != Kind::Mesh || thing.group || thing.moves ||
+            in_place(thing) || clear(*thing.representation))
+            continue;
+        const double across = pixels(i);
+        if (across >= kCopyShows)
+            order.emplace_back(-across, i);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<uint8_t> out(things_.size(), 0);
+    double rest = triangles_of_copies();
+    for (const auto& [across, i] : order) {
+        const auto triangles =
+            static_cast<double>(things_[i].representation->summary.cost.triangles);
+        if (triangles > rest)
+            continue;
+        rest -= triangles;
+        out[i] = 1;
+    }
+    return out;
 }
 
 size_t SkyThings::splits_of(const SkyThing& thing) const {

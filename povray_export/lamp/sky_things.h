@@ -5,6 +5,7 @@
 #include "base/job.h"
 #include "choose/cut.h"
 
+#include <functional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -56,6 +57,10 @@ public:
     bool skipped(const SkyThing& thing) const;
     /// Whether a thing's shares, if its corners have some, are found where it stands.
     bool in_place(const SkyThing& thing) const;
+    /// By thing, 1: it is one of the largest opaque copies that are not in place, which may have
+    /// shares of their own in a picture alone. `pixels`: how many of them a thing is across; 0: it
+    /// is not seen. Leaves, whose outlines make them large as text, are lit about alike everywhere.
+    std::vector<uint8_t> largest_copies(const std::function<double(size_t)>& pixels) const;
     /// The triangles that splits may add to something where it stands: large things have more of
     /// them, whatever the cut draws.
     size_t splits_of(const SkyThing& thing) const;
@@ -69,6 +74,9 @@ private:
     };
 
     std::string collect(uint64_t most_triangles);
+    double triangles_of_copies() const;
+    /// Whether light goes through some of it.
+    bool clear(const Representation& representation) const;
     bool moves(const Object& object) const { return !still_ && object.deforms; }
     bool walk(ObjectIndex object, const Affine& world, RayMask hidden, bool below);
     /// Finds the meshes whose copies all have shares of their own: those of few placements, and

@@ -132,6 +132,7 @@ private:
         SkyOcclusionOptions wanted;
         wanted.file = (options_.bakes.empty() ? options_.folder : options_.bakes) / "sky_light.bin";
         wanted.still = options_.still;
+        wanted.camera = options_.still ? &view_.camera : nullptr;
         wanted.load_finest = options_.load_finest;
         wanted.needs = &needs_;
         wanted.pixels = static_cast<double>(view_.width) * view_.height;

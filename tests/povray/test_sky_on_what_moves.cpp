@@ -157,7 +157,7 @@ TEST_F(SkyOnSides, SidesOfABoxThatIsLargeInThePictureHaveLightOfTheirOwn) {
     const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
     const auto on_box = [&](bool large) {
         SkyOcclusionOptions options;
-        options.sides_show = [large](const Bound&) { return large; };
+        options.pixels_across = [large](const Bound&) { return large ? 100.0 : 1.0; };
         Problems problems;
         const SkyOcclusion light(builder.model, cut, options, problems, {});
         for (size_t i = 0; i < cut.chosen.size(); ++i) {

@@ -26,7 +26,7 @@ double sum(const std::array<double, 3>& values) {
 }  // namespace
 
 size_t CornerShares::CornerKeyHash::operator()(const CornerKey& key) const {
-    uint64_t out = key.vertex * uint64_t{2} + (key.opaque ? 1 : 0);
+    uint64_t out = key.vertex * uint64_t{4} + (key.opaque ? 1 : 0) + (key.behind ? 2 : 0);
     for (const int part : key.normal)
         out = measure::scramble(out + static_cast<uint64_t>(part + 64));
     return static_cast<size_t>(out);
@@ -56,12 +56,12 @@ CornerShares::CornerShares(const Mesh& mesh, std::span<const uint32_t> welded,
     known_.reserve(mesh.triangles.size());
 }
 
-CornerShares::CornerKey CornerShares::key_of(size_t triangle, int corner) const {
+CornerShares::CornerKey CornerShares::key_of(size_t triangle, int corner, bool behind) const {
     const uint32_t vertex = mesh_.triangles[triangle][corner];
     glm::dvec3 normal =
         mesh_.normals.empty() ? area_vector(mesh_, triangle) : glm::dvec3(mesh_.normals[vertex]);
     const double length = glm::length(normal);
-    CornerKey key{welded_[vertex], {}, opaque(triangle)};
+    CornerKey key{welded_[vertex], {}, opaque(triangle), behind};
     if (length > 0 && std::isfinite(length)) {
         for (int i = 0; i < 3; ++i)
             key.normal[static_cast<size_t>(i)] =
@@ -70,13 +70,13 @@ CornerShares::CornerKey CornerShares::key_of(size_t triangle, int corner) const 
     return key;
 }
 
-void CornerShares::add(size_t triangle, const TriangleShares& shares, double area) {
+void CornerShares::add(size_t triangle, const TriangleShares& shares, double area, bool behind) {
     areas_[triangle] = area;
     const double rays = sum(shares.rays) + sum(shares.inside_rays);
     for (int corner = 0; corner < 3; ++corner) {
         const size_t at = static_cast<size_t>(corner);
-        const auto [found, fresh] =
-            known_.try_emplace(key_of(triangle, corner), static_cast<uint32_t>(groups_.size()));
+        const auto [found, fresh] = known_.try_emplace(key_of(triangle, corner, behind),
+                                                       static_cast<uint32_t>(groups_.size()));
         if (fresh)
             groups_.emplace_back();
         group_of_[3 * triangle + at] = found->second;

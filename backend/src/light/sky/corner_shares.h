@@ -21,8 +21,9 @@ public:
     CornerShares(const Mesh& mesh, std::span<const uint32_t> welded, const SkySurface& surface,
                  const UnevenSky* sky);
 
-    /// Adds a triangle's shares; all triangles are added in turn. `area`: placed, of any unit.
-    void add(size_t triangle, const TriangleShares& shares, double area);
+    /// Adds a triangle's shares; all triangles are added in turn. `area`: placed, of any unit;
+    /// `behind`: the shares are those of its back.
+    void add(size_t triangle, const TriangleShares& shares, double area, bool behind = false);
     /// Writes the bytes of all corners and the mean; `shares` are all that were added.
     void finish(std::span<const TriangleShares> shares, SkyShares& out) const;
 
@@ -32,6 +33,7 @@ private:
         uint32_t vertex;
         std::array<int, 3> normal;
         bool opaque;
+        bool behind;
         bool operator==(const CornerKey&) const = default;
     };
     struct CornerKeyHash {
@@ -51,7 +53,7 @@ private:
         double share(const UnevenSky* sky) const;
     };
 
-    CornerKey key_of(size_t triangle, int corner) const;
+    CornerKey key_of(size_t triangle, int corner, bool behind) const;
     bool opaque(size_t triangle) const { return surface_.opaque_slot(mesh_.slot(triangle)); }
     /// The mean of a triangle's corners.
     double mean_of_corners(size_t triangle) const;

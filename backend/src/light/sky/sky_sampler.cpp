@@ -21,6 +21,11 @@ constexpr int kDarkRays = 8;  // Taste: more tell better whether it does
 // as much as if all of its rays were one triangle's.
 // Taste: about the triangles at a corner; more parts are less even where these are few.
 constexpr uint32_t kParts = 8;
+// The rays that tell what lies in a ground from what lies below a roof of one sheet, and how much
+// they rise. Below a roof most of them leave it at its sides.
+// Taste: more tell it better; flatter ones leave wider roofs, and meet more of a hilly ground.
+constexpr int kLowRays = 3;
+constexpr double kLowHeight = 0.25;  // Taste: as kLowRays
 // Where a ray begins, above its triangle, in parts of the triangle's longest edge and of the mesh.
 // Law: rays have single precision (6e-8 of the mesh); this is a large margin.
 constexpr double kAboveTriangle = 1e-4;
@@ -137,17 +142,24 @@ glm::dvec3 SkySampler::expected(const SkyPlace& place, bool both, const glm::dve
            request_.uneven->received(both ? -place.normal : place.normal);
 }
 
-TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays) const {
+SkySampler::PlacedTriangle SkySampler::PlacedTriangle::back() const {
+    PlacedTriangle out = *this;
+    out.face = -face;
+    out.up = -up;
+    out.turned = !turned;
+    return out;
+}
+
+TriangleShares SkySampler::shares(const Mesh& mesh, size_t triangle, int rays, bool behind) const {
     const std::optional<PlacedTriangle> placed = this->placed(mesh, triangle);
     if (!placed)
         return {};
+    if (behind)
+        return shares_of_front(mesh, triangle, placed->back(), rays);
     TriangleShares out = shares_of_front(mesh, triangle, *placed, rays);
     if (request_.original == nullptr || !out.inside)
         return out;
-    PlacedTriangle turned = *placed;
-    turned.face = -turned.face;
-    turned.up = -turned.up;
-    const TriangleShares back = shares_of_front(mesh, triangle, turned, rays);
+    const TriangleShares back = shares_of_front(mesh, triangle, placed->back(), rays);
     return back.inside ? out : back;
 }
 
@@ -184,7 +196,7 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
             seen += own;
             back = both ? own : 0;  // of the second one
             inside = inside || (!both && part == 0 && one.open && light(one) > 0 &&
-                                meets_near_back(one, reach));
+                                meets_near_back(one, reach) && lies_below_backs(place));
         }
         if (request_.uneven != nullptr)
             uneven.expected = expected(place, both, uneven.open);
@@ -210,7 +222,7 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
     }
     const bool dark = !both && out.open_share() < kDark;
     out.inside = dark && lies_inside(mesh, triangle, placed);
-    if (dark && !out.inside && !closed_)
+    if (dark && !out.inside && !closed_ && !placed.turned)
         add_back(mesh, triangle, placed, rays, out);
     return out;
 }
@@ -229,7 +241,7 @@ void SkySampler::face_of(const Mesh& mesh, size_t triangle, const PlacedTriangle
     out.face = placed.face;
     out.up = placed.up;
     out.longest = placed.longest;
-    const glm::dvec3 normal = normal_map * smooth;
+    const glm::dvec3 normal = normal_map * (placed.turned ? -smooth : smooth);
     const double length = glm::length(normal);
     out.normal = length > 0 && std::isfinite(length) && glm::dot(normal, placed.up) > 0
                      ? normal / length
@@ -364,6 +376,27 @@ void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangl
         if (weights[corner] > 0)
             out.uneven[corner].add(uneven[corner], out.rays[corner] / weights[corner]);
     }
+}
+
+bool SkySampler::lies_below_backs(const SkyPlace& place) const {
+    const bool alone = request_.around == nullptr;
+    if (alone && !request_.horizon.upright)
+        return true;
+    const glm::dvec3 up = alone ? request_.horizon.up : glm::dvec3(0, 0, 1);
+    const glm::dvec3 side = glm::normalize(perpendicular(up));
+    const glm::dvec3 other = glm::cross(up, side);
+    SkyRay low = ray(place, false);
+    int backs = 0;
+    for (int i = 0; i < kLowRays; ++i) {
+        const double turn = 2 * kPi * (place.point[2] + i / double{kLowRays});
+        const glm::dvec3 flat = std::cos(turn) * side + std::sin(turn) * other;
+        low.direction = kLowHeight * up + flat;
+        if (glm::dot(low.direction, place.up) < 0)
+            low.direction = kLowHeight * up - flat;
+        low.direction = glm::normalize(low.direction);
+        backs += glm::dot(low.direction, place.up) < 0 || meets_near_back(low, kInfinity) ? 1 : 0;
+    }
+    return 2 * backs > kLowRays;
 }
 
 bool SkySampler::meets_near_back(const SkyRay& ray, double reach) const {

@@ -33,6 +33,9 @@ struct SkyRequest {
     /// By triangle of the surface, 1: it is seen. The others have few rays, and are not split.
     /// Empty: all are seen.
     std::span<const uint8_t> seen = {};
+    /// By triangle of the surface, 1: it is opaque and seen from behind, so that its share is that
+    /// of its back. Empty: none is.
+    std::span<const uint8_t> behind = {};
     /// The shares that were found for fewer seen triangles, whose splits are kept. Null: none were.
     const SkyShares* known = nullptr;
     /// How much of the sky below counts, for the surface alone.
@@ -110,16 +113,20 @@ public:
     /// The triangle in both frames; none for one without area.
     struct PlacedTriangle {
         std::array<glm::dvec3, 3> at;
-        glm::dvec3 face;     // unit, own frame
-        glm::dvec3 up;       // unit, world
-        double longest = 0;  // edge, own frame
-        double area = 0;     // world, twice
+        glm::dvec3 face;      // unit, own frame
+        glm::dvec3 up;        // unit, world
+        double longest = 0;   // edge, own frame
+        double area = 0;      // world, twice
+        bool turned = false;  // true: the faces are those of its back
+
+        PlacedTriangle back() const;
     };
     std::optional<PlacedTriangle> placed(const Mesh& mesh, size_t triangle) const;
 
     /// The shares of a triangle: those of its back, where it is one of a level whose front lies
     /// inside of the original. There a thin thing became flat, and the back may be what is seen.
-    TriangleShares shares(const Mesh& mesh, size_t triangle, int rays) const;
+    /// `behind`: it is opaque and its back is what is seen.
+    TriangleShares shares(const Mesh& mesh, size_t triangle, int rays, bool behind = false) const;
 
     /// A place where rays begin.
     struct SkyPlace {
@@ -198,6 +205,9 @@ private:
     /// ground nobody looks.
     void add_back(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, int rays,
                   TriangleShares& out) const;
+
+    /// Whether backs are all around above a place, as below a ground, and not as below a roof.
+    bool lies_below_backs(const SkyPlace& place) const;
 
     /// Whether a ray ends at the back of something opaque within `reach` (world): the back of a
     /// roof is farther than that of what a thing stands in.

@@ -65,8 +65,10 @@ std::string SkyShares::bytes() const {
     append_bytes(out, mean);
     append_bytes(out, rays);
     append_bytes(out, static_cast<uint32_t>(tints.size()));
-    append_bytes(out, static_cast<uint32_t>(seen.size()));
-    out.append(reinterpret_cast<const char*>(seen.data()), seen.size());
+    for (const std::vector<uint8_t>* one : {&seen, &behind}) {
+        append_bytes(out, static_cast<uint32_t>(one->size()));
+        out.append(reinterpret_cast<const char*>(one->data()), one->size());
+    }
     append_bytes(out, static_cast<uint32_t>(splits.size()));
     append_bytes(out, long_rounds);
     for (const std::vector<geometry::WeldedEdge>& edges : splits) {
@@ -84,14 +86,17 @@ std::optional<SkyShares> SkyShares::of_bytes(std::string_view bytes, size_t tria
     SkyShares out;
     uint32_t rounds = 0;
     uint32_t tinted = 0;
-    uint32_t told = 0;
     if (!reader.take(out.mean) || !(out.mean >= 0 && out.mean <= 1) || !reader.take(out.rays) ||
-        !reader.take(tinted) || !reader.take(told) || (told != 0 && told != triangles) ||
-        told > reader.rest().size())
+        !reader.take(tinted))
         return {};
-    out.seen.resize(told);
-    for (uint8_t& one : out.seen)
-        reader.take(one);
+    for (std::vector<uint8_t>* one : {&out.seen, &out.behind}) {
+        uint32_t told = 0;
+        if (!reader.take(told) || (told != 0 && told != triangles) || told > reader.rest().size())
+            return {};
+        one->resize(told);
+        for (uint8_t& byte : *one)
+            reader.take(byte);
+    }
     if (!reader.take(rounds) || rounds > kMostSplitRounds || !reader.take(out.long_rounds) ||
         out.long_rounds > rounds)
         return {};
@@ -121,13 +126,24 @@ std::optional<SkyShares> SkyShares::of_bytes(std::string_view bytes, size_t tria
     return out;
 }
 
-bool covers(const SkyShares& shares, std::span<const uint8_t> seen) {
-    if (shares.seen.empty())
-        return true;
-    if (seen.size() != shares.seen.size())
-        return false;
-    for (size_t i = 0; i < seen.size(); ++i) {
-        if (seen[i] != 0 && shares.seen[i] == 0)
+bool covers(const SkyShares& shares, std::span<const uint8_t> seen,
+            std::span<const uint8_t> behind) {
+    const std::span<const uint8_t> all[] = {seen, shares.seen, behind, shares.behind};
+    size_t count = 0;
+    for (const std::span<const uint8_t> one : all)
+        count = std::max(count, one.size());
+    for (const std::span<const uint8_t> one : all) {
+        if (!one.empty() && one.size() != count)
+            return false;  // those of another mesh
+    }
+    const auto marked = [](std::span<const uint8_t> bytes, size_t i, bool otherwise) {
+        return bytes.empty() ? otherwise : bytes[i] != 0;
+    };
+    for (size_t i = 0; i < count; ++i) {
+        if (!marked(seen, i, true))
+            continue;
+        if (!marked(shares.seen, i, true) ||
+            marked(behind, i, false) != marked(shares.behind, i, false))
             return false;
     }
     return true;

@@ -44,6 +44,8 @@ struct SkyShares {
     uint32_t rays = 0;  // that told the share of a corner, about
     /// By triangle of the mesh that was split, 1: its corners have all their rays. Empty: all have.
     std::vector<uint8_t> seen;
+    /// By triangle as `seen`, 1: the shares are those of its back. Empty: none are.
+    std::vector<uint8_t> behind;
 
     /// The bytes as which the shares are kept, and the shares of such bytes for a mesh of so many
     /// triangles: none where they are damaged.
@@ -51,8 +53,10 @@ struct SkyShares {
     static std::optional<SkyShares> of_bytes(std::string_view bytes, size_t triangles);
 };
 
-/// Whether all triangles that are seen (a byte not 0; empty: all are) have all their rays.
-bool covers(const SkyShares& shares, std::span<const uint8_t> seen);
+/// Whether all triangles that are seen (a byte not 0; empty: all are) have all their rays, on the
+/// side that is seen (`behind`, a byte not 0: the back; empty: none are).
+bool covers(const SkyShares& shares, std::span<const uint8_t> seen,
+            std::span<const uint8_t> behind = {});
 /// Whether the shares are those of the mesh as it is, without splits.
 bool whole(const Mesh& mesh, const SkyShares& shares);
 /// A mesh with its splits, and the triangle that each of its triangles is a part of.

@@ -105,6 +105,11 @@ private:
     bool thorough(size_t triangle) const {
         return thorough_.empty() || thorough_[sources_[triangle]] != 0;
     }
+    /// Whether what is seen of a triangle of the split mesh is its back.
+    bool behind(size_t triangle) const {
+        return !request_.behind.empty() && request_.behind[sources_[triangle]] != 0 &&
+               opaque(triangle);
+    }
     /// Whether a triangle may be split by its share: it is seen, and was not when others were.
     bool may_split(size_t triangle) const {
         const uint32_t source = sources_[triangle];
@@ -197,7 +202,8 @@ private:
             const ray::FlushDenormals fast;
             const size_t end = std::min(triangles.size(), (block + 1) * kBlock);
             for (size_t i = block * kBlock; i < end; ++i)
-                shares_[triangles[i]] = sampler_.shares(mesh, triangles[i], rays_of(triangles[i]));
+                shares_[triangles[i]] = sampler_.shares(mesh, triangles[i], rays_of(triangles[i]),
+                                                        behind(triangles[i]));
         });
     }
 
@@ -221,8 +227,9 @@ private:
                 continue;
             const uint32_t a = sides[i - 1].second;
             const uint32_t b = sides[i].second;
-            // Beyond a fold the share may be another one without need for splits.
-            if (!(glm::dot(area_vector(mesh, a), area_vector(mesh, b)) > 0))
+            // Beyond a fold, or on the other side, the share may be another one without need for splits.
+            if (!(glm::dot(area_vector(mesh, a), area_vector(mesh, b)) > 0) ||
+                behind(a) != behind(b))
                 continue;
             const double step = std::abs(shares_[a].share() - shares_[b].share());
             if (step < kStep)
@@ -277,12 +284,13 @@ private:
         out.splits = std::move(splits_);
         out.long_rounds = static_cast<uint32_t>(long_rounds_);
         out.seen.assign(request_.seen.begin(), request_.seen.end());
+        out.behind.assign(request_.behind.begin(), request_.behind.end());
         out.rays = static_cast<uint32_t>(std::max(request_.rays, 0));
         CornerShares corners(split_.mesh(), split_.welded(), request_.surface, request_.uneven);
         for (size_t i = 0; i < shares_.size(); ++i) {
             const std::optional<SkySampler::PlacedTriangle> placed =
                 sampler_.placed(split_.mesh(), i);
-            corners.add(i, shares_[i], placed ? placed->area : 0);
+            corners.add(i, shares_[i], placed ? placed->area : 0, behind(i));
         }
         corners.finish(shares_, out);
         return out;

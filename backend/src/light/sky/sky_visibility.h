@@ -10,7 +10,8 @@ namespace lodestone::light {
 /// The shares of all corners. Each triangle's rays begin all over it. What they tell goes to the
 /// corners as far as these are near, so that the mean of the surface is kept, and corners at one
 /// place that face the same way share one number. An opaque triangle's share is that of its front,
-/// with half of its back's where that is dark and the mesh is open; one with masks or clear
+/// with half of its back's where that is dark and the mesh is open, or of its back, where that is
+/// what is seen; one with masks or clear
 /// materials (leaves) has that of the side that is seen: each as often as it is open. Triangles that
 /// lie inside of something opaque tell nothing to corners that others share. A level has the light
 /// of its original: rays begin at the places of that which it shows, facing alike. The result does
