@@ -60,6 +60,7 @@ protected:
     }
     static size_t different(const std::vector<SkyLightPtr>& lights) {
         std::vector<Hash> hashes;
+        hashes.reserve(lights.size());
         for (const SkyLightPtr& light : lights)
             hashes.push_back(light->hash);
         std::sort(hashes.begin(), hashes.end());
