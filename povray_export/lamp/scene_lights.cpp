@@ -11,6 +11,28 @@
 
 namespace lodestone::povray {
 
+std::vector<Light> all_lights(const WrittenSky& sky, const Model& model) {
+    std::vector<Light> out = sky.lights;
+    out.insert(out.end(), model.lights.begin(), model.lights.end());
+    return out;
+}
+
+light::LightDemands light_demands(const WrittenSky& sky, const Shading& shading,
+                                  const LightSampling& sampling, double light_error,
+                                  std::span<const Light> lights) {
+    light::LightDemands demands;
+    demands.grids.pixel_error = light_error;
+    demands.grids.shadow_error = shading.shadow_error;
+    demands.grids.rays = sampling.rays;
+    demands.bounces = shading.bounces;
+    // Where light is gathered, walls shadow a sky.
+    if (shading.bounces == 0)
+        demands.sky = sky.ambient;
+    demands.sky_shaded = shading.sky_rays > 0;
+    demands.suns = lights;
+    return demands;
+}
+
 void SceneLights::append(std::string& out, Light light, int rays) const {
     // The factor on an area's edges, which still say where it shines.
     // Taste: any size that no pixel can tell will do.

@@ -4,12 +4,21 @@
 
 #include "light/light_plan.h"
 #include "povray_export/lamp/light_writer.h"
+#include "povray_export/lamp/sky_writer.h"
 #include "povray_export/scene/shading.h"
 
 #include <map>
 #include <string>
 
 namespace lodestone::povray {
+
+/// All lights of a picture: those that stand for the sky's image, and the model's.
+std::vector<Light> all_lights(const WrittenSky& sky, const Model& model);
+/// The demands on a plan of lamps, or on the light of what they light; `lights` are all of them,
+/// and must outlive it.
+light::LightDemands light_demands(const WrittenSky& sky, const Shading& shading,
+                                  const LightSampling& sampling, double light_error,
+                                  std::span<const Light> lights);
 
 /// The lights of one view. All arguments must outlive it; `shading` is filled up. `bound` is around
 /// everything, magnified by `times`; `occluders` are not magnified.

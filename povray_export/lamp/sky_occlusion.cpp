@@ -21,7 +21,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 20;
+constexpr uint32_t kBakeVersion = 21;
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
@@ -33,6 +33,9 @@ constexpr int kOfLargest = 2;
 // The pixels across from which on the sides of a box have their own light of the sky.
 // Taste: a smaller value shades smaller boxes, for twenty times the text of each.
 constexpr double kSidesShow = 8;
+// The pixels across from which on an ellipsoid is shaded, and not lit evenly.
+// Taste: a smaller value shades smaller ones, for 1,280 triangles each.
+constexpr double kRoundShows = 24;
 
 class SkyPlanner {
 public:
@@ -135,7 +138,8 @@ private:
     bool has_corners(const SkyThing& thing) const {
         const RepresentationSummary& summary = thing.representation->summary;
         return summary.kind == Kind::Mesh ||
-               (summary.kind == Kind::Box && pixels_across(thing) >= kSidesShow);
+               (summary.kind == Kind::Box && pixels_across(thing) >= kSidesShow) ||
+               (summary.kind == Kind::Ellipsoid && pixels_across(thing) >= kRoundShows);
     }
     double pixels_across(const SkyThing& thing) const {
         return options_.pixels_across ? options_.pixels_across(transformed(
@@ -147,13 +151,6 @@ private:
     bool shown(size_t i) const {
         return !all_.skipped(all_.things()[i]) &&
                (options_.needs == nullptr || options_.needs->seen(i));
-    }
-
-    /// The triangles whose corners have shares.
-    static uint64_t triangles_of(const Representation& representation) {
-        return representation.summary.kind == Kind::Mesh
-                   ? representation.summary.cost.triangles
-                   : solid_triangles(representation.summary.kind, representation.payload);
     }
 
     /// Lists all that is to be known.
@@ -183,7 +180,7 @@ private:
             return false;
         if (representation.summary.kind == Kind::Mesh)
             return fits(representation.mesh(), shares);
-        return fits(tessellated(representation), shares);
+        return fits(light::drawn_mesh(representation), shares);
     }
     static bool fits(const Mesh& mesh, const light::SkyShares& shares) {
         return light::whole(mesh, shares) || light::split_for_sky(mesh, shares).has_value();
@@ -201,7 +198,7 @@ private:
             wanted.horizon = grounds_.horizon(thing);
         if (all_.finest_of(thing).summary.hash != thing.representation->summary.hash)
             wanted.original = &all_.finest_of(thing);
-        wanted.seen.assign(triangles_of(*thing.representation), 0);
+        wanted.seen.assign(light::drawn_triangles(*thing.representation), 0);
         return &wanted;
     }
 
@@ -225,7 +222,7 @@ private:
 
     /// The triangles of a surface that count as seen.
     static uint64_t seen_of(const WantedShares& wanted) {
-        return wanted.seen.empty() ? triangles_of(*wanted.representation)
+        return wanted.seen.empty() ? light::drawn_triangles(*wanted.representation)
                                    : static_cast<uint64_t>(std::count(
                                          wanted.seen.begin(), wanted.seen.end(), uint8_t{1}));
     }
@@ -236,7 +233,7 @@ private:
         std::vector<uint64_t> all;
         for (auto& [key, wanted] : wanted_shares_) {
             wanted.behind = wanted.sides.behind();
-            all.push_back(triangles_of(*wanted.representation));
+            all.push_back(light::drawn_triangles(*wanted.representation));
             if (static_cast<double>(seen_of(wanted)) >
                 kMostSeen * static_cast<double>(wanted.seen.size()))
                 wanted.seen.clear();
@@ -247,7 +244,7 @@ private:
         const CornerRays whole_rays(usual, all, options_.pixels);
         for (auto& [key, wanted] : wanted_shares_) {
             wanted.rays = rays.of(seen_of(wanted));
-            wanted.whole_rays = whole_rays.of(triangles_of(*wanted.representation));
+            wanted.whole_rays = whole_rays.of(light::drawn_triangles(*wanted.representation));
         }
     }
 
@@ -259,7 +256,8 @@ private:
         hash_horizon(hasher.value(key), horizon);
         wanted.key = hasher.result();
         if (const auto bytes = bakes_.find(wanted.key)) {
-            auto found = light::SkyShares::of_bytes(*bytes, triangles_of(*wanted.representation));
+            auto found =
+                light::SkyShares::of_bytes(*bytes, light::drawn_triangles(*wanted.representation));
             if (found && fits(*wanted.representation, *found))
                 wanted.found = std::make_shared<const light::SkyShares>(std::move(*found));
         }

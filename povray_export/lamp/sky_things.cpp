@@ -2,6 +2,7 @@
 #include "povray_export/lamp/sky_things.h"
 
 #include "light/clear_materials.h"
+#include "light/sky/sky_scene.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/scene/invertible_transform.h"
 
@@ -183,7 +184,8 @@ std::vector<uint8_t> SkyThings::largest_copies(const std::function<double(size_t
     std::vector<std::pair<double, size_t>> order;
     for (size_t i = 0; i < things_.size(); ++i) {
         const SkyThing& thing = things_[i];
-        if (thing.representation->summary.kind != Kind::Mesh || thing.group || thing.moves ||
+        const Kind kind = thing.representation->summary.kind;
+        if ((kind != Kind::Mesh && kind != Kind::Ellipsoid) || thing.group || thing.moves ||
             in_place(thing) || clear(*thing.representation))
             continue;
         const double across = pixels(i);
@@ -195,7 +197,7 @@ std::vector<uint8_t> SkyThings::largest_copies(const std::function<double(size_t
     double rest = triangles_of_copies();
     for (const auto& [across, i] : order) {
         const auto triangles =
-            static_cast<double>(things_[i].representation->summary.cost.triangles);
+            static_cast<double>(light::drawn_triangles(*things_[i].representation));
         if (triangles > rest)
             continue;
         rest -= triangles;

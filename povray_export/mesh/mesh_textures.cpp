@@ -186,6 +186,7 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
         for (const Material* m = &slot.material; m != nullptr; m = m->other.get())
             slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
         slot.surface.uvs = uvs && textured(slot.material);
+        slot.surface.around = options.around;
         slot.even_sky = options.few_textures || rays_go_on(slot.material, slot.surface.uvs);
         slot.surface.layered = !options.few_textures && !options.only_shadows;
         uses_uvs_ = uses_uvs_ || slot.surface.uvs;

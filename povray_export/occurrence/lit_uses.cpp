@@ -6,6 +6,23 @@
 
 namespace lodestone::povray {
 
+std::vector<light::DrawnThing> drawn_things(const Model& model, const choose::Cut& cut,
+                                            std::span<const OccurrenceUse> uses,
+                                            std::span<const RayMask> replaced) {
+    std::vector<light::DrawnThing> drawn;
+    drawn.reserve(uses.size());
+    for (const OccurrenceUse& use : uses) {
+        const choose::CutNode& node = cut.nodes[use.node];
+        RayMask hidden = use.in_place != 0 ? kAllRays : node.hidden;
+        // An object with flags is not parted; this flag says nothing to lights.
+        if ((replaced[use.node] & ~hidden) != 0)
+            hidden |= kRadiosityRays;
+        drawn.push_back(
+            {&model.objects.at(node.object).representations.at(use.lod), use.world, hidden});
+    }
+    return drawn;
+}
+
 std::vector<LitUse> lit_uses(std::span<const OccurrenceUse> drawn, const light::LightPlan& plan) {
     std::vector<uint32_t> parts(drawn.size(), 0);
     for (const light::LitPiece& piece : plan.pieces)

@@ -11,6 +11,13 @@
 
 namespace lodestone::povray {
 
+/// All uses, by their numbers, also those of which nothing is drawn, for lights: these are chosen by
+/// what the camera sees, as if all rays met that. `replaced`: by node, the classes of rays that meet
+/// other uses in its place.
+std::vector<light::DrawnThing> drawn_things(const Model& model, const choose::Cut& cut,
+                                            std::span<const OccurrenceUse> uses,
+                                            std::span<const RayMask> replaced);
+
 /// A use within a group of lights of a plan.
 struct LitUse {
     OccurrenceUse use;

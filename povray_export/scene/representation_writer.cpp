@@ -36,6 +36,7 @@ std::string solid_text(const Model& model, const Representation& representation,
         }
         TexturedSurface surface;
         surface.layered = !options.few_textures;
+        surface.around = options.around;
         if (options.sky)
             surface.sky = share_of_grade(grade_of_share(options.sky->factor));
         out += '\n' + texture_text(material, surface, pictures);
@@ -78,7 +79,7 @@ public:
         const bool body = half.x > 0 && half.y > 0 && half.z > 0;
         if (body && options_.textures && options_.sky && options_.sky->shares) {
             Representation lit = representation_;
-            lit.payload = std::make_shared<const Mesh>(tessellated(representation_));
+            lit.payload = std::make_shared<const Mesh>(light::drawn_mesh(representation_));
             lit.summary.kind = Kind::Mesh;
             return lit_text(lit);
         }
@@ -215,6 +216,11 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
         hasher.text("shown").value(options.shown->hash);
     if (options.sky)
         hasher.text("sky").value(options.sky->hash);
+    if (options.around != glm::dvec3(0.0))
+        hasher.text("around")
+            .value(options.around.x)
+            .value(options.around.y)
+            .value(options.around.z);
     if (options.few_textures)
         hasher.text("few textures");
     if (options.only_shadows)

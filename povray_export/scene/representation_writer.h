@@ -33,6 +33,7 @@ struct RepresentationOptions {
     bool coarse_crowds = true;
     ShownTrianglesPtr shown = {};  // of a mesh; null: all of it
     SkyLightPtr sky = {};          // the sky's light on it; null: all of it
+    glm::dvec3 around{0.0};        // the radiance of lit surfaces around, which rough metal shows
     /// True: lamps of groups light it, for which POV-Ray casts shadow rays anew for each texture that
     /// a point has. So it has one where it can: without a layer of gloss, and with one share of the
     /// sky a triangle.

@@ -9,6 +9,7 @@
 #include "light/light_plan.h"
 #include "povray_export/lamp/light_writer.h"
 #include "povray_export/lamp/renderer_surfaces.h"
+#include "povray_export/lamp/rough_metal.h"
 #include "povray_export/lamp/scene_lights.h"
 #include "povray_export/lamp/scene_sky.h"
 #include "povray_export/mesh/pixel_field.h"
@@ -78,7 +79,7 @@ public:
         find_needs();
         find_sky_light();
         collect();
-        plan_ = light_plan();
+        plan_lights();
         add_files();
         includes_.write(job_.part(sky_ && sky_->baked() ? kBakePart : 0, 1));
         hide_replaced();
@@ -119,9 +120,7 @@ private:
         if (!lit() || shading_.bounces > 0)
             return;
         needs_ = PictureNeeds();
-        std::vector<Light> lights = sky().lights;
-        lights.insert(lights.end(), model_.lights.begin(), model_.lights.end());
-        needs_.find(model_, renderer_, cut_, view_, lights, job_);
+        needs_.find(model_, renderer_, cut_, view_, all_lights(sky(), model_), job_);
         report_.left_out_bytes = needs_.bytes_left_out();
         report_.covered = needs_.covered();
     }
@@ -188,7 +187,7 @@ private:
             return;
         }
         uses_.push_back(use);
-        looks_.push_back({textures, sky});
+        looks_.push_back({textures, sky, glm::dvec3(0.0)});
         bounds_.push_back(transformed(representation_of(use).summary.bound, use.world));
     }
 
@@ -196,6 +195,7 @@ private:
     struct UseLook {
         bool textures = false;
         SkyLightPtr sky;
+        glm::dvec3 around{0.0};  // the light of surfaces around that rough metal shows
     };
 
     /// Lets each use be drawn from a file.
@@ -210,7 +210,7 @@ private:
         const std::vector<double> rays = lamp_rays(bounds_, plan_);
         for (size_t i = 0; i < uses_.size(); ++i) {
             OccurrenceUse& use = uses_[i];
-            const auto& [textures, sky] = looks_[i];
+            const auto& [textures, sky, around] = looks_[i];
             const Bound& bound = bounds_[i];
             const double pixel = pixels_.at(bound) / enlarged(use);
             const bool cut = use.position != kNoPosition;
@@ -223,6 +223,7 @@ private:
                  .uvs = options_.uvs,
                  .coarse_crowds = view_.pixel_error > 0,
                  .sky = textures && !shadows ? sky : nullptr,
+                 .around = textures && !shadows ? around : glm::dvec3(0.0),
                  .few_textures = textures && (few || (many && rays[i] >= kFewLampRays)),
                  .only_shadows = shadows},
                 outline_of(pixel),
@@ -339,42 +340,41 @@ private:
         return povray::light_sampling(shading_, options_.antialiasing, view_.camera);
     }
 
-    /// The lights of all uses, by their numbers, also of those of which nothing is drawn. They are
-    /// chosen by what the camera sees, as if all rays met that.
-    light::LightPlan light_plan() {
-        report_.lights_each = static_cast<double>(report_.lamps);
-        if (!lit() || options_.light_error == 0.0)
-            return {};
-        std::vector<light::DrawnThing> drawn;
-        drawn.reserve(uses_.size());
-        const std::vector<RayMask> replaced =
-            replaced_by([](const OccurrenceUse&) { return true; });
-        for (const OccurrenceUse& use : uses_) {
-            RayMask hidden = use.in_place != 0 ? kAllRays : cut_.nodes[use.node].hidden;
-            // An object with flags is not parted; this flag says nothing to lights.
-            if ((replaced[use.node] & ~hidden) != 0)
-                hidden |= kRadiosityRays;
-            drawn.push_back({&representation_of(use), use.world, hidden});
+    /// How many pixels each use is across; 0: it is not seen as it is.
+    std::vector<double> pixels_across() const {
+        std::vector<double> pixels;
+        pixels.reserve(uses_.size());
+        for (size_t i = 0; i < uses_.size(); ++i) {
+            const size_t position = uses_[i].position;
+            const bool seen =
+                looks_[i].textures && position != kNoPosition && needs_.seen(position);
+            pixels.push_back(seen ? 2 * bounds_[i].radius / pixels_.at(bounds_[i]) : 0);
         }
-        light::LightDemands demands;
-        demands.grids.pixel_error = options_.light_error.value_or(view_.pixel_error);
-        demands.grids.shadow_error = shading_.shadow_error;
-        demands.grids.rays = light_sampling().rays;
-        demands.bounces = shading_.bounces;
-        // Where light is gathered, walls shadow a sky.
-        if (shading_.bounces == 0)
-            demands.sky = sky().ambient;
-        demands.sky_shaded = shading_.sky_rays > 0;
-        std::vector<Light> suns = sky().lights;
-        suns.insert(suns.end(), model_.lights.begin(), model_.lights.end());
-        demands.suns = suns;
+        return pixels;
+    }
+
+    /// Chooses lights by what the camera sees, and finds what rough metal shows.
+    void plan_lights() {
+        report_.lights_each = static_cast<double>(report_.lamps);
+        if (!lit())
+            return;
+        const std::vector<light::DrawnThing> drawn = drawn_things(
+            model_, cut_, uses_, replaced_by([](const OccurrenceUse&) { return true; }));
+        const std::vector<Light> lights = all_lights(sky(), model_);
+        light::LightDemands demands =
+            light_demands(sky(), shading_, light_sampling(),
+                          options_.light_error.value_or(view_.pixel_error), lights);
+        const std::vector<glm::dvec3> around =
+            light_on_rough_metal(model_, renderer_, drawn, pixels_across(), demands, job_);
+        for (size_t i = 0; i < uses_.size(); ++i)
+            looks_[i].around = around[i];
+        if (options_.light_error == 0.0)
+            return;
         demands.measured_suns = options_.antialiasing != Antialiasing::Reference;
-        light::LightPlan plan =
-            light::plan_lights(model_, renderer_, drawn, view_, demands, problems_, job_);
-        if (!plan.empty())
-            report_.lights_each = plan.lights_each;
-        report_.soft_lamps = soft_lamps(plan);
-        return plan;
+        plan_ = light::plan_lights(model_, renderer_, drawn, view_, demands, problems_, job_);
+        if (!plan_.empty())
+            report_.lights_each = plan_.lights_each;
+        report_.soft_lamps = soft_lamps(plan_);
     }
 
     /// The text of everything that is drawn, with the lights of its group around it.

@@ -107,6 +107,7 @@ LampGlossText lamp_gloss_text(const LampGloss& gloss, const glm::dvec3& color, c
     out.pigment += '}';
     out.finish = finish;
     out.finish.diffuse *= kDarkened;
+    out.finish.glow *= kDarkened;
     for (int i = 0; i < 3; ++i) {
         // The gloss of the sky is exact at the angle where it is brightest for such a pigment, and
         // nowhere brighter than it is.

@@ -173,8 +173,8 @@ Finish finish_of(const SurfaceLook& look) {
                             look.clearcoat * coat_sharp * 0.25;
     finish.mirror_grazing = std::clamp(finish.mirror_grazing, finish.mirror, 1.0);
     finish.mirror_metallic = finish.mirror > 0 ? metal_mirror / finish.mirror : 0;
-    finish.ambient = glm::dvec3((1 - m) * (0.967 + 0.058 * look.roughness) +
-                                m * (1 - metal_sharp) * row.metal_sky);
+    finish.around = m * (1 - metal_sharp) * row.metal_sky;
+    finish.ambient = glm::dvec3((1 - m) * (0.967 + 0.058 * look.roughness) + finish.around);
     return finish;
 }
 
@@ -195,7 +195,7 @@ void append_finish(std::string& out, const Finish& finish, double light,
     out += "finish{ambient ";
     append_rgb(out, finish.ambient * light);
     out += " emission ";
-    append_rgb(out, emission);
+    append_rgb(out, emission + finish.glow * light);
     append_named(out, " diffuse ", finish.diffuse * light);
     if (finish.brilliance != 1)
         append_named(out, " brilliance ", finish.brilliance);

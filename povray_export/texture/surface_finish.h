@@ -14,6 +14,8 @@ namespace lodestone::povray {
 /// and tints the reflections that `metallic` and `mirror_metallic` say.
 struct Finish {
     glm::dvec3 ambient{0.0};  // answer to a uniform sky, which is not traced
+    double around = 0;        // the part of it that rough metal has
+    glm::dvec3 glow{0.0};     // what it shows of lit surfaces around, which are not traced
     double diffuse = 0;       // share of a light's radiance times pi
     double brilliance = 1;    // exponent of the cosine
     double specular = 0;      // albedo of the highlight
@@ -41,7 +43,7 @@ Finish finish_of(const SurfaceLook& look);
 double white_sky(const SurfaceLook& look);
 
 /// Appends finish{...}, with every value written, because POV-Ray's defaults (ambient 0.1, diffuse
-/// 0.6) would leak in. `light` scales all of it; emission (times the pigment) comes on top.
+/// 0.6) would leak in. `light` scales all of it; other emission (times the pigment) comes on top.
 void append_finish(std::string& out, const Finish& finish, double light,
                    const glm::dvec3& emission);
 

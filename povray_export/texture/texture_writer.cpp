@@ -319,6 +319,7 @@ private:
         out.finish = finish_of(below);
         const double sky = share(surface_.sky, 1);
         out.finish.ambient *= brightness * sky * surface_.sky_hue;
+        out.finish.glow = out.finish.around * brightness * surface_.around;
         out.finish.diffuse *= brightness;
         out.finish.specular *= std::lerp(1.0, brightness, out.finish.metallic);
         // The part that has not the color of the pigment, and is the same all over.

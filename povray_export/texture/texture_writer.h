@@ -20,6 +20,7 @@ struct TexturedSurface {
     glm::dvec4 color{1.0};    // color of its vertices, linear; counts where the material uses it
     double sky = 1;           // share of a uniform sky's light that reaches it
     glm::dvec3 sky_hue{1.0};  // factors on that light
+    glm::dvec3 around{0.0};   // radiance of lit surfaces around, in the mean
     bool layered = true;      // false: gloss is not a layer, but in the color of what is no picture
     bool flat = false;        // true: in one plane with to_uv; only there bumps are shown
     Affine to_uv;             // position to (u, v, height above the plane), where flat

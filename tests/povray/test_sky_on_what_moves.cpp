@@ -198,3 +198,40 @@ TEST_F(SkyOnSides, SidesOfABoxThatIsLargeInThePictureHaveLightOfTheirOwn) {
         text += read_file(entry.path());
     EXPECT_NE(text.find("box{"), std::string::npos);
 }
+
+// Spheres that became ellipsoids were as light below as above.
+TEST_F(SkyOnSides, AnEllipsoidThatIsLargeInThePictureIsShaded) {
+    const ObjectIndex ball =
+        builder.primitive(Kind::Ellipsoid, Primitive{}, {builder.matte({1, 1, 1})});
+    builder.place(ball, at(0, 0, 1));
+    builder.place(builder.mesh(shapes::quad(400, 400)), at(-200, -200, -.01));
+    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+    const auto on_ball = [&](double pixels) {
+        SkyOcclusionOptions options;
+        options.pixels_across = [pixels](const Bound&) { return pixels; };
+        Problems problems;
+        const SkyOcclusion light(builder.model, cut, options, problems, {});
+        for (size_t i = 0; i < cut.chosen.size(); ++i) {
+            if (cut.nodes[cut.chosen[i]].object == ball)
+                return light.of(i);
+        }
+        return SkyLightPtr{};
+    };
+    const SkyLightPtr even = on_ball(10);
+    ASSERT_TRUE(even);
+    EXPECT_FALSE(even->shares);
+    EXPECT_NEAR(even->factor, 0.5, 0.05);
+    const SkyLightPtr shaded = on_ball(100);
+    ASSERT_TRUE(shaded && shaded->shares);
+    const Mesh mesh = light::drawn_mesh(builder.model.objects[ball].representations[0]);
+    ASSERT_EQ(mesh.triangles.size(), 1280u);
+    const auto split = light::split_for_sky(mesh, *shaded->shares);
+    ASSERT_TRUE(split);
+    for (size_t i = 0; i < split->mesh.triangles.size(); ++i) {
+        const double up = glm::normalize(area_vector(split->mesh, i)).z;
+        double share = 0;
+        for (size_t corner = 0; corner < 3; ++corner)
+            share += light::share_of_byte(shaded->shares->corners[3 * i + corner]) / 3;
+        EXPECT_NEAR(share, (1 + up) / 2, 0.15);  // as an open hill of that slope
+    }
+}

@@ -8,6 +8,7 @@
 #include "light/clear_materials.h"
 #include "light/light_arrival.h"
 #include "light/seen/distinct_shapes.h"
+#include "light/seen/random_place.h"
 #include "measure/visible/convex_bound.h"
 
 #include <glm/common.hpp>
@@ -197,19 +198,64 @@ std::vector<LitPoint> LitScene::followed(SightRay ray) const {
     return out;
 }
 
+SightRay LitScene::sent_on(const glm::dvec3& from, const glm::dvec3& normal, PcgRandom& random) {
+    const double turn = 2 * std::numbers::pi * random.uniform();
+    const double out_of = random.uniform();  // the square of the sine
+    const glm::dvec3 u = perpendicular(normal);
+    const glm::dvec3 v = glm::cross(normal, u);
+    SightRay ray;
+    ray.origin = from;
+    ray.direction = std::sqrt(out_of) * (std::cos(turn) * u + std::sin(turn) * v) +
+                    std::sqrt(1 - out_of) * normal;
+    return ray;
+}
+
+std::vector<LitPoint> LitScene::surroundings(uint32_t drawn, int rays, PcgRandom& random) const {
+    const Affine& world = drawn_[drawn].world;
+    const Mesh& mesh = *shapes_[shape_of_[drawn]].mesh;
+    std::vector<double> areas;
+    areas.reserve(mesh.triangles.size());
+    double area = 0;
+    const auto corner = [&](uint32_t triangle, int i) {
+        return world(glm::dvec3(mesh.positions[mesh.triangles[triangle][i]]));
+    };
+    const auto across = [&](uint32_t triangle) {
+        const glm::dvec3 a = corner(triangle, 0);
+        return glm::cross(corner(triangle, 1) - a, corner(triangle, 2) - a);
+    };
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+        const double own = glm::length(across(i));
+        areas.push_back(area += std::isfinite(own) ? own : 0);
+    }
+    std::vector<LitPoint> out;
+    if (!(area > 0) || !std::isfinite(area))
+        return out;
+    const double mirrored = glm::determinant(world.linear) < 0 ? -1 : 1;
+    RandomPlace places(mesh, world, random);
+    for (int i = 0; i < rays; ++i) {
+        const auto at =
+            std::upper_bound(areas.begin(), areas.end(), random.uniform() * area) - areas.begin();
+        const auto triangle =
+            static_cast<uint32_t>(std::min<size_t>(static_cast<size_t>(at), areas.size() - 1));
+        const glm::dvec3 normal = mirrored * across(triangle);
+        if (!(glm::length(normal) > 0))
+            continue;
+        const glm::dvec3 unit = glm::normalize(normal);
+        const glm::dvec3 from = places.point_on(triangle);
+        const double aside = std::max(least_, kRelative * std::sqrt(glm::length(normal)));
+        std::vector<LitPoint> seen = followed(sent_on(from + unit * aside, unit, random));
+        if (!seen.empty())
+            out.push_back(std::move(seen.back()));
+    }
+    return out;
+}
+
 /// Continues from the last point, as a matt surface hands on light.
 void LitScene::bounce(int times, PcgRandom& random, std::vector<LitPoint>& out) const {
     for (int i = 0; i < times && !out.empty(); ++i) {
         const LitPoint& from = out.back();
-        const double turn = 2 * std::numbers::pi * random.uniform();
-        const double out_of = random.uniform();  // the square of the sine
-        const glm::dvec3 u = perpendicular(from.normal);
-        const glm::dvec3 v = glm::cross(from.normal, u);
-        SightRay ray;
-        ray.origin = from.position + from.aside;
-        ray.direction = std::sqrt(out_of) * (std::cos(turn) * u + std::sin(turn) * v) +
-                        std::sqrt(1 - out_of) * from.normal;
-        std::vector<LitPoint> more = followed(ray);
+        std::vector<LitPoint> more =
+            followed(sent_on(from.position + from.aside, from.normal, random));
         if (more.empty())
             return;
         out.push_back(std::move(more.back()));

@@ -39,6 +39,10 @@ public:
         return followed(sight_ray(view, x, y));
     }
 
+    /// The points at which so many rays end that leave a drawn thing all over it, weighted by the
+    /// cosine; fewer where some meet nothing.
+    std::vector<LitPoint> surroundings(uint32_t drawn, int rays, PcgRandom& random) const;
+
     /// Sets the light that points get besides lamps: of a uniform sky, as far as they see it where
     /// it is shaded, and of suns where nothing hides them (what is partly clear hides them
     /// where it hides more than half).
@@ -81,6 +85,8 @@ private:
     LitSurface surface_of(const DrawnThing& lit, uint16_t slot) const;
     SceneShape shape_of(const DrawnThing& lit);
     std::vector<LitPoint> followed(SightRay ray) const;
+    /// A ray that leaves a matt surface by chance.
+    static SightRay sent_on(const glm::dvec3& from, const glm::dvec3& normal, PcgRandom& random);
     void bounce(int times, PcgRandom& random, std::vector<LitPoint>& out) const;
 
     const Model& model_;

@@ -14,18 +14,36 @@
 namespace lodestone::light {
 namespace {
 
+// The subdivisions of an ellipsoid.
+// Taste: a larger value draws rounder outlines, for four times the triangles each.
+constexpr int kSubdivisions = 3;
+
 bool meets_back(const Mesh& mesh, uint32_t triangle, const glm::dvec3& direction) {
     return glm::dot(area_vector(mesh, triangle), direction) > 0;
 }
 
 }  // namespace
 
+Mesh drawn_mesh(const Representation& representation) {
+    return representation.summary.kind == Kind::Ellipsoid
+               ? tessellated(representation, kSubdivisions)
+               : tessellated(representation);
+}
+
+uint64_t drawn_triangles(const Representation& representation) {
+    const RepresentationSummary& summary = representation.summary;
+    if (summary.kind == Kind::Mesh)
+        return summary.cost.triangles;
+    return summary.kind == Kind::Ellipsoid ? uint64_t{20} << (2 * kSubdivisions)
+                                           : solid_triangles(summary.kind, representation.payload);
+}
+
 SkySurface SkySurfaces::made(const Representation& representation) {
     SkySurface out;
     if (representation.summary.kind == Kind::Mesh && representation.resident())
         out.mesh = std::get<std::shared_ptr<const Mesh>>(representation.payload);
     else
-        out.mesh = std::make_shared<const Mesh>(tessellated(representation));
+        out.mesh = std::make_shared<const Mesh>(drawn_mesh(representation));
     double area = 0;
     out.areas.reserve(out.mesh->triangles.size());
     for (size_t i = 0; i < out.mesh->triangles.size(); ++i) {

@@ -13,6 +13,12 @@
 
 namespace lodestone::light {
 
+/// The mesh of a representation whose corners have shares of their own. Ellipsoids are smooth, of
+/// 1,280 triangles: their outline is off by less than a pixel where they are 400 across.
+Mesh drawn_mesh(const Representation& representation);
+/// Its triangles.
+uint64_t drawn_triangles(const Representation& representation);
+
 /// A placed representation that hides the sky from others.
 struct SkyOccluder {
     const Representation* representation = nullptr;

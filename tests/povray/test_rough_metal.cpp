@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards that rough metal shows the lit surfaces around it.
+#include "povray/povray_scenes.h"
+#include "povray_export/lamp/renderer_surfaces.h"
+#include "povray_export/lamp/rough_metal.h"
+#include "povray_export/texture/texture_writer.h"
+#include "scenes/with_rays.h"
+
+using namespace lodestone;
+using namespace lodestone::povray;
+
+namespace {
+
+Material metal(double metallic, double roughness) {
+    Material out;
+    out.base_color = {0.9, 0.6, 0.3};
+    out.metallic = metallic;
+    out.roughness = roughness;
+    return out;
+}
+
+class RoughMetal : public WithRays {
+protected:
+    /// The light around a ball of a material, so many pixels across, and around others of it.
+    std::vector<glm::dvec3> light(const Material& material, double pixels, int copies = 1) {
+        scenes::Builder builder;
+        builder.model.lights.push_back(scenes::sun(kPi));
+        const ObjectIndex floor = builder.mesh(shapes::quad(200, 200));
+        const ObjectIndex ball = builder.mesh(shapes::sphere(1, 8), {builder.material(material)});
+        const Model& model = builder.finish();
+        std::vector<light::DrawnThing> drawn = {
+            {&model.objects[floor].representations[0], {glm::dmat3(1.0), {-100, -100, 0}}}};
+        for (int i = 0; i < copies; ++i)
+            drawn.push_back({&model.objects[ball].representations[0],
+                             {glm::dmat3(1.0), {4.0 * i, 0, 3.0 + 5 * i}}});
+        light::LightDemands demands;
+        demands.suns = model.lights;
+        return light_on_rough_metal(model, renderer_surfaces(model), drawn,
+                                    std::vector<double>(drawn.size(), pixels), demands, {});
+    }
+};
+
+}  // namespace
+
+TEST_F(RoughMetal, OnlyRoughMetalThatIsSeenShowsWhatIsAroundIt) {
+    const std::vector<glm::dvec3> found = light(metal(1, 0.5), 100);
+    EXPECT_EQ(found[0], glm::dvec3(0.0));  // the floor
+    EXPECT_GT(found[1].x, 0.2);
+    EXPECT_EQ(light(metal(1, 0.5), 1)[1], glm::dvec3(0.0));
+    EXPECT_EQ(light(metal(1, 0.1), 100)[1], glm::dvec3(0.0));  // a mirror
+    EXPECT_EQ(light(metal(0, 0.5), 100)[1], glm::dvec3(0.0));
+    Material mixed = metal(0, 0.5);
+    mixed.other = std::make_shared<const Material>(metal(1, 0.5));
+    EXPECT_GT(light(mixed, 100)[1].x, 0.2);
+}
+
+TEST_F(RoughMetal, ManyCopiesHaveOneLight) {
+    const std::vector<glm::dvec3> few = light(metal(1, 0.5), 100, 3);
+    EXPECT_NE(few[1], few[3]);
+    const std::vector<glm::dvec3> many = light(metal(1, 0.5), 100, 8);
+    for (size_t i = 2; i < many.size(); ++i)
+        EXPECT_EQ(many[i], many[1]);
+    EXPECT_GT(many[1].x, 0.1);
+}
+
+// Rough metal in a room that lamps light was black but for its highlights.
+TEST(RoughMetalText, ItGlowsInItsColorAsMuchAsMetalSendsOn) {
+    const auto text = [](const Material& material, const glm::dvec3& around) {
+        PictureWriter pictures;
+        TexturedSurface surface;
+        surface.around = around;
+        return texture_text(material, surface, pictures);
+    };
+    const std::string dark = text(metal(1, 0.5), glm::dvec3(0.0));
+    EXPECT_NE(dark.find("emission rgb <0,0,0>"), std::string::npos) << dark;
+    const std::string lit = text(metal(1, 0.5), {0.5, 0.5, 1});
+    // 0.871 of the light of all sides comes back from metal of that roughness.
+    EXPECT_NE(lit.find("emission rgb <0.4355,0.4355,0.871>"), std::string::npos) << lit;
+    EXPECT_EQ(text(metal(0, 0.5), {0.5, 0.5, 1}), text(metal(0, 0.5), glm::dvec3(0.0)));
+}
