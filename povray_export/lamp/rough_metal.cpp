@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace lodestone::povray {
 namespace {
@@ -26,6 +27,9 @@ constexpr size_t kAroundAll = 100'000;  // Taste: as kMostAround
 // The steps of the light in an octave.
 // Taste: more are nearer, for other files of alike things.
 constexpr double kAroundSteps = 16;
+// The distinct triangles at which rays are cast, at most: as for the sky.
+// Taste: a larger value finds it in larger scenes, for seconds and gigabytes.
+constexpr uint64_t kMostTriangles = 6'000'000;
 // The radiance that counts as none.
 // Taste: a tenth of what an 8-bit picture shows.
 constexpr double kLeastAround = 3e-5;
@@ -39,6 +43,18 @@ bool shows_around(const Material& material) {
         look.roughness = std::max(look.roughness, 0.5);
     return finish_of(look).around >= kLeastShown ||
            (material.other && shows_around(*material.other));
+}
+
+/// Whether rays can be cast at all of it in a moment.
+bool is_small(std::span<const light::DrawnThing> drawn) {
+    std::unordered_set<Hash> known;
+    uint64_t triangles = 0;
+    for (const light::DrawnThing& thing : drawn) {
+        const RepresentationSummary& summary = thing.representation->summary;
+        if (known.insert(summary.hash).second)
+            triangles += summary.cost.triangles;
+    }
+    return triangles <= kMostTriangles;
 }
 
 glm::dvec3 stepped(const glm::dvec3& light) {
@@ -71,7 +87,7 @@ std::vector<glm::dvec3> light_on_rough_metal(const Model& model,
             }))
             requests.push_back({i, 0});
     }
-    if (requests.empty())
+    if (requests.empty() || !is_small(drawn))
         return out;
     const size_t rays = std::clamp(kAroundAll / requests.size(), kFewestAround, kMostAround);
     for (light::AroundRequest& request : requests)

@@ -9,8 +9,8 @@ namespace lodestone::povray {
 
 /// The radiance (linear) of the lit surfaces around each drawn thing that shows rough metal, in
 /// steps, of which copies of one thing have few; 0 for all others. `pixels`: how many each is
-/// across in the picture; 0: it is not seen. Where rays cannot be cast it is 0, too. Throws
-/// Error(Cancelled).
+/// across in the picture; 0: it is not seen. Where rays cannot be cast, or there is too much to cast
+/// them at, it is 0, too. Throws Error(Cancelled).
 std::vector<glm::dvec3> light_on_rough_metal(const Model& model,
                                              const light::RendererSurfaces& renderer,
                                              std::span<const light::DrawnThing> drawn,

@@ -63,6 +63,23 @@ TEST_F(RoughMetal, ManyCopiesHaveOneLight) {
     EXPECT_GT(many[1].x, 0.1);
 }
 
+TEST_F(RoughMetal, WhereThereIsTooMuchItShowsNothing) {
+    scenes::Builder builder;
+    builder.model.lights.push_back(scenes::sun(kPi));
+    const ObjectIndex floor = builder.mesh(shapes::quad(200, 200));
+    const ObjectIndex ball = builder.mesh(shapes::sphere(1, 8), {builder.material(metal(1, 0.5))});
+    builder.model.objects[floor].representations[0].summary.cost.triangles = 10'000'000;
+    const Model& model = builder.finish();
+    const std::vector<light::DrawnThing> drawn = {
+        {&model.objects[floor].representations[0], {glm::dmat3(1.0), {-100, -100, 0}}},
+        {&model.objects[ball].representations[0], {glm::dmat3(1.0), {0, 0, 3}}}};
+    light::LightDemands demands;
+    demands.suns = model.lights;
+    EXPECT_EQ(light_on_rough_metal(model, renderer_surfaces(model), drawn,
+                                   std::vector<double>{100, 100}, demands, {})[1],
+              glm::dvec3(0.0));
+}
+
 // Rough metal in a room that lamps light was black but for its highlights.
 TEST(RoughMetalText, ItGlowsInItsColorAsMuchAsMetalSendsOn) {
     const auto text = [](const Material& material, const glm::dvec3& around) {
