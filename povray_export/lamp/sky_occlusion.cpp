@@ -122,7 +122,7 @@ private:
         hasher.value(kBakeVersion).value(options_.rays);
         hasher.value(options_.uneven ? options_.uneven->hash() : 0);
         hasher.value(summary.hash).value(all_.finest_of(thing).summary.hash);
-        hasher.value(summary.cost.triangles).value(thing.moves).value(options_.camera != nullptr);
+        hasher.value(summary.cost.triangles).value(thing.moves);
         if (thing.moves)
             hash_horizon(hasher, grounds_.horizon(thing));
         if (placed != nullptr) {
@@ -254,6 +254,9 @@ private:
         const light::SkyHorizon horizon = horizon_of(wanted);
         Hasher hasher;
         hash_horizon(hasher.value(key), horizon);
+        // Cameras that see other sides do not find what another one saw anew each time.
+        if (!wanted.behind.empty())
+            hasher.array(std::span<const uint8_t>(wanted.behind));
         wanted.key = hasher.result();
         if (const auto bytes = bakes_.find(wanted.key)) {
             auto found =

@@ -132,6 +132,25 @@ TEST_F(SkyInAPictureAlone, ARoofHasTheLightOfTheSideThatIsSeen) {
     EXPECT_LT(lights(&below)[0]->shares->mean, 0.15);
 }
 
+TEST_F(SkyInAPictureAlone, CamerasThatTakeTurnsFindWhatEachOfThemSaw) {
+    builder.place(builder.mesh(shapes::quad(4, 4)), {glm::dmat3(1.0), {-2, -2, 0.2}});
+    builder.place(builder.mesh(shapes::box({-40, -40, -1}, {40, 40, 0})));
+    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+    SkyOcclusionOptions options;
+    options.file = own_scratch() / "sky_light.bin";
+    std::filesystem::remove(options.file);
+    const auto baked = [&](double height) {
+        const Camera camera = from({0, 0, height});
+        options.camera = &camera;
+        Problems problems;
+        return SkyOcclusion(builder.model, cut, options, problems, {}).baked();
+    };
+    EXPECT_TRUE(baked(10));
+    EXPECT_TRUE(baked(0.1));
+    EXPECT_FALSE(baked(10));
+    EXPECT_FALSE(baked(0.1));
+}
+
 TEST_F(SkyInAPictureAlone, TheLargestCopiesHaveTheLightOfWhereTheyStand) {
     const ObjectIndex ball = builder.mesh(shapes::sphere(1, 4));
     for (int x = 0; x < 30; ++x)
