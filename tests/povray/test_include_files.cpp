@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards which meshes with masks share a file, what is kept of them, and what they take together.
 #include "base/findings_file.h"
+#include "light/seen/seen_parts.h"
 #include "povray/mask_cards.h"
+#include "povray_export/scene/include_files.h"
 #include "scenes/damaged_files.h"
 
 #include <cstring>
@@ -231,4 +233,27 @@ TEST(IncludeFiles, WhatCastsShadowsAloneHadALook) {
     EXPECT_NE(both.find("normal_vectors"), std::string::npos);
     EXPECT_EQ(both.find("mesh2", both.find("mesh2", both.find("mesh2") + 1) + 1),
               std::string::npos);
+}
+
+// A picture of a large ellipsoid, half of which it did not show, ended with an error.
+TEST(IncludeFiles, AShadedEllipsoidIsWrittenWhole) {
+    Builder builder;
+    const ObjectIndex ball =
+        builder.primitive(Kind::Ellipsoid, Primitive{}, {builder.matte({1, 1, 1})});
+    const Model& model = builder.finish();
+    const Representation& representation = model.objects[ball].representations[0];
+    auto shares = std::make_shared<light::SkyShares>();
+    shares->corners.assign(3 * light::drawn_triangles(representation), 255);
+    const ExportOptions options = fresh_folder("ellipsoid");
+    std::filesystem::create_directories(options.folder / "r");
+    IncludeFiles files(model, options.folder, options.folder);
+    std::vector<uint8_t> needed(tessellated(representation).triangles.size(), 0);
+    needed[0] = light::kSeen;
+    files.add(representation, {.sky = sky_light(1, shares, {}, {}, glm::dvec3(1.0))}, 1, needed);
+    files.name(0, 0, {});
+    files.write({});
+    size_t found = 0;
+    for (const auto& [name, text] : contents(options.folder))
+        found += text.find("face_indices{1280,") != std::string::npos ? 1 : 0;
+    EXPECT_EQ(found, 1u);
 }
