@@ -344,8 +344,10 @@ bool SkySampler::lies_inside(const Mesh& mesh, size_t triangle,
     uint32_t near = ray::kNoTriangle;
     while (backs < kHalf && others <= kHalf) {
         const auto number = static_cast<uint32_t>(backs + others);
-        const SkyRay ray = this->ray(place(mesh, triangle, placed, number, near), false);
-        ++(meets_near_back(ray, size_ * enlarged_) ? backs : others);
+        const SkyPlace from = place(mesh, triangle, placed, number, near);
+        const bool back =
+            meets_near_back(ray(from, false), size_ * enlarged_) && lies_below_backs(from);
+        ++(back ? backs : others);
     }
     return backs == kHalf;
 }

@@ -128,3 +128,16 @@ TEST_F(SkySampling, WhatIsInABoxLiesInside) {
         });
     }
 }
+
+// The rim of a pavement below thatched roofs was black at full detail, where few rays met but roofs.
+TEST_F(SkySampling, WhatIsBelowARoofOfOneSheetDoesNotAndWhatIsBelowAGroundDoes) {
+    for (const float width : {5.0f, 400.0f}) {
+        const Things things = {{shapes::quad(1, 1), {-.5, -.5, -1}},
+                               {shapes::quad(width, width), {-width / 2, -width / 2, 0}}};
+        with_sampler(things, [&](const SkySampler& sampler, const Mesh& mesh) {
+            const auto placed = sampler.placed(mesh, 0);
+            ASSERT_TRUE(placed);
+            EXPECT_EQ(sampler.lies_inside(mesh, 0, *placed), width > 100);
+        });
+    }
+}
