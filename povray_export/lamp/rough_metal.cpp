@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "povray_export/lamp/rough_metal.h"
 
-#include "light/light_around.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/texture/surface_finish.h"
+
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
-#include <unordered_set>
 
 namespace lodestone::povray {
 namespace {
@@ -21,15 +21,12 @@ constexpr double kAroundShows = 4;
 constexpr double kLeastShown = 0.1;
 // The rays of one thing, and about those of all.
 // Taste: more have less noise between things, in more time.
-constexpr size_t kMostAround = 256;
-constexpr size_t kFewestAround = 8;     // Taste: as kMostAround
-constexpr size_t kAroundAll = 100'000;  // Taste: as kMostAround
+constexpr size_t kMostAroundRays = 256;
+constexpr size_t kFewestAroundRays = 8;     // Taste: as kMostAroundRays
+constexpr size_t kAllAroundRays = 100'000;  // Taste: as kMostAroundRays
 // The steps of the light in an octave.
 // Taste: more are nearer, for other files of alike things.
 constexpr double kAroundSteps = 16;
-// The distinct triangles at which rays are cast, at most: as for the sky.
-// Taste: a larger value finds it in larger scenes, for seconds and gigabytes.
-constexpr uint64_t kMostTriangles = 6'000'000;
 // The radiance that counts as none.
 // Taste: a tenth of what an 8-bit picture shows.
 constexpr double kLeastAround = 3e-5;
@@ -45,35 +42,27 @@ bool shows_around(const Material& material) {
            (material.other && shows_around(*material.other));
 }
 
-/// Whether rays can be cast at all of it in a moment.
-bool is_small(std::span<const light::DrawnThing> drawn) {
-    std::unordered_set<Hash> known;
-    uint64_t triangles = 0;
-    for (const light::DrawnThing& thing : drawn) {
-        const RepresentationSummary& summary = thing.representation->summary;
-        if (known.insert(summary.hash).second)
-            triangles += summary.cost.triangles;
-    }
-    return triangles <= kMostTriangles;
-}
-
-glm::dvec3 stepped(const glm::dvec3& light) {
-    glm::dvec3 out(0.0);
+light::LightAround stepped(const light::LightAround& light) {
+    light::LightAround out;
     for (int i = 0; i < 3; ++i) {
-        if (light[i] > kLeastAround)
-            out[i] = std::exp2(std::round(kAroundSteps * std::log2(light[i])) / kAroundSteps);
+        if (light.radiance[i] > kLeastAround)
+            out.radiance[i] =
+                std::exp2(std::round(kAroundSteps * std::log2(light.radiance[i])) / kAroundSteps);
     }
+    if (out.radiance != glm::dvec3(0.0))
+        out.part = std::round(kAroundSteps * light.part) / kAroundSteps;
     return out;
 }
 
 }  // namespace
 
-std::vector<glm::dvec3> light_on_rough_metal(const Model& model,
-                                             const light::RendererSurfaces& renderer,
-                                             std::span<const light::DrawnThing> drawn,
-                                             std::span<const double> pixels,
-                                             const light::LightDemands& demands, const Job& job) {
-    std::vector<glm::dvec3> out(drawn.size(), glm::dvec3(0.0));
+std::vector<light::LightAround> light_on_rough_metal(const Model& model,
+                                                     const light::RendererSurfaces& renderer,
+                                                     std::span<const light::DrawnThing> drawn,
+                                                     std::span<const double> pixels,
+                                                     const light::LightDemands& demands,
+                                                     const Job& job) {
+    std::vector<light::LightAround> out(drawn.size());
     std::vector<uint8_t> shows;
     shows.reserve(model.materials.size());
     for (const Material& material : model.materials)
@@ -87,18 +76,24 @@ std::vector<glm::dvec3> light_on_rough_metal(const Model& model,
             }))
             requests.push_back({i, 0});
     }
-    if (requests.empty() || !is_small(drawn))
+    if (requests.empty() || light::LitScene::too_large(drawn))
         return out;
-    const size_t rays = std::clamp(kAroundAll / requests.size(), kFewestAround, kMostAround);
+    const size_t rays =
+        std::clamp(kAllAroundRays / requests.size(), kFewestAroundRays, kMostAroundRays);
     for (light::AroundRequest& request : requests)
         request.rays = static_cast<int>(rays);
-    std::vector<glm::dvec3> found;
+    std::vector<light::LightAround> found;
     try {
         found = light::light_around(model, renderer, drawn, requests, demands, job);
     } catch (const Error& error) {
         if (error.status == Status::Cancelled)
             throw;
         return out;
+    }
+    // Where nothing hides the sky, all of it is shown already.
+    for (light::LightAround& light : found) {
+        if (!demands.sky_shaded)
+            light.radiance = glm::max(light.radiance - demands.sky, glm::dvec3(0.0));
     }
     std::unordered_map<Hash, std::vector<size_t>> alike;  // requests
     for (size_t i = 0; i < requests.size(); ++i) {
@@ -108,11 +103,13 @@ std::vector<glm::dvec3> light_on_rough_metal(const Model& model,
     for (const auto& [hash, copies] : alike) {
         if (copies.size() <= kPlacementGrades)
             continue;
-        glm::dvec3 sum(0.0);
+        light::LightAround mean;
+        for (const size_t i : copies) {
+            mean.radiance += found[i].radiance / static_cast<double>(copies.size());
+            mean.part += found[i].part / static_cast<double>(copies.size());
+        }
         for (const size_t i : copies)
-            sum += found[i];
-        for (const size_t i : copies)
-            out[requests[i].drawn] = stepped(sum / static_cast<double>(copies.size()));
+            out[requests[i].drawn] = stepped(mean);
     }
     return out;
 }

@@ -34,6 +34,8 @@ struct SkyLight {
 
     /// The share of a corner of the split mesh, which lies there (own frame).
     double share(size_t triangle, int corner, const glm::vec3& at) const;
+    /// The grade of what is the same all over it.
+    double even_share() const { return share_of_grade(grade_of_share(factor)); }
     /// The hue of the light there; 0 of the sky's own.
     SkyTint tint(size_t triangle, int corner) const;
 };

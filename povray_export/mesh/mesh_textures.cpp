@@ -103,6 +103,7 @@ MeshTextures::MeshTextures(const Model& model, const Representation& representat
       shown_(cut.any ? cut.mesh : mesh_),
       job_(job),
       sky_(options.sky),
+      around_(options.around),
       uses_normals_(!options.only_shadows) {
     find_slots(model, representation, options);
     if (uses_uvs_)
@@ -113,8 +114,7 @@ MeshTextures::MeshTextures(const Model& model, const Representation& representat
     bool corners = false;
     for (TexturedSlot& slot : slots_) {
         refraction_ = std::max(refraction_, refraction_of(slot.material));
-        if (sky_)
-            slot.surface.sky = share_of_grade(grade_of_share(sky_->factor));
+        slot.surface.light(sky_ ? std::optional(sky_->even_share()) : std::nullopt, around_);
         if (slot.colored || !slot.planes.empty() || (sky_ && sky_->shares))
             corners = true;
         else
@@ -186,7 +186,6 @@ void MeshTextures::find_slots(const Model& model, const Representation& represen
         for (const Material* m = &slot.material; m != nullptr; m = m->other.get())
             slot.colored = slot.colored || (m->vertex_colors && !mesh_.colors.empty());
         slot.surface.uvs = uvs && textured(slot.material);
-        slot.surface.around = options.around;
         slot.even_sky = options.few_textures || rays_go_on(slot.material, slot.surface.uvs);
         slot.surface.layered = !options.few_textures && !options.only_shadows;
         uses_uvs_ = uses_uvs_ || slot.surface.uvs;
@@ -467,7 +466,7 @@ void MeshTextures::find_corners(PictureWriter& pictures) {
             return found->second;
         TexturedSlot slot = slots_[at];
         if (lit) {
-            slot.surface.sky = share_of_grade(grade.share);
+            slot.surface.light(share_of_grade(grade.share), around_);
             slot.surface.sky_hue =
                 factors_of_tint(SkyTint(grade.red, grade.blue) / light::kTintSteps, sky_->color);
         }

@@ -93,6 +93,7 @@ private:
     const Mesh& shown_;  // what is left of it
     const Job& job_;
     SkyLightPtr sky_;
+    light::LightAround around_;
     int tint_step_ = 1;  // the steps of tints that count as one
     std::vector<TexturedSlot> slots_;
     std::vector<uint16_t> slot_at_;  // place in slots_, by slot of the mesh

@@ -36,9 +36,8 @@ std::string solid_text(const Model& model, const Representation& representation,
         }
         TexturedSurface surface;
         surface.layered = !options.few_textures;
-        surface.around = options.around;
-        if (options.sky)
-            surface.sky = share_of_grade(grade_of_share(options.sky->factor));
+        surface.light(options.sky ? std::optional(options.sky->even_share()) : std::nullopt,
+                      options.around);
         out += '\n' + texture_text(material, surface, pictures);
         const double refraction = refraction_of(material);
         if (refraction > 0) {
@@ -216,11 +215,9 @@ Hash file_hash(const Representation& representation, const RepresentationOptions
         hasher.text("shown").value(options.shown->hash);
     if (options.sky)
         hasher.text("sky").value(options.sky->hash);
-    if (options.around != glm::dvec3(0.0))
-        hasher.text("around")
-            .value(options.around.x)
-            .value(options.around.y)
-            .value(options.around.z);
+    if (const glm::dvec3& around = options.around.radiance; around != glm::dvec3(0.0))
+        hasher.text("around").value(around.x).value(around.y).value(around.z).value(
+            options.around.part);
     if (options.few_textures)
         hasher.text("few textures");
     if (options.only_shadows)

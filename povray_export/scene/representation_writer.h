@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
+#include "povray_export/lamp/rough_metal.h"
 #include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/mesh/detail_bands.h"
 #include "povray_export/mesh/mask_outlines.h"
@@ -31,9 +32,9 @@ struct RepresentationOptions {
     std::optional<int> most_cut = {};
     /// Outlines of crowds of leaves may be coarser than that, where they would have too many corners.
     bool coarse_crowds = true;
-    ShownTrianglesPtr shown = {};  // of a mesh; null: all of it
-    SkyLightPtr sky = {};          // the sky's light on it; null: all of it
-    glm::dvec3 around{0.0};        // the radiance of lit surfaces around, which rough metal shows
+    ShownTrianglesPtr shown = {};    // of a mesh; null: all of it
+    SkyLightPtr sky = {};            // the sky's light on it; null: all of it
+    light::LightAround around = {};  // lit surfaces around, which rough metal shows
     /// True: lamps of groups light it, for which POV-Ray casts shadow rays anew for each texture that
     /// a point has. So it has one where it can: without a layer of gloss, and with one share of the
     /// sky a triangle.

@@ -187,7 +187,7 @@ private:
             return;
         }
         uses_.push_back(use);
-        looks_.push_back({textures, sky, glm::dvec3(0.0)});
+        looks_.push_back({textures, sky, {}});
         bounds_.push_back(transformed(representation_of(use).summary.bound, use.world));
     }
 
@@ -195,7 +195,7 @@ private:
     struct UseLook {
         bool textures = false;
         SkyLightPtr sky;
-        glm::dvec3 around{0.0};  // the light of surfaces around that rough metal shows
+        light::LightAround around;  // that rough metal shows
     };
 
     /// Lets each use be drawn from a file.
@@ -223,7 +223,7 @@ private:
                  .uvs = options_.uvs,
                  .coarse_crowds = view_.pixel_error > 0,
                  .sky = textures && !shadows ? sky : nullptr,
-                 .around = textures && !shadows ? around : glm::dvec3(0.0),
+                 .around = textures && !shadows ? around : light::LightAround{},
                  .few_textures = textures && (few || (many && rays[i] >= kFewLampRays)),
                  .only_shadows = shadows},
                 outline_of(pixel),
@@ -364,7 +364,7 @@ private:
         light::LightDemands demands =
             light_demands(sky(), shading_, light_sampling(),
                           options_.light_error.value_or(view_.pixel_error), lights);
-        const std::vector<glm::dvec3> around =
+        const std::vector<light::LightAround> around =
             light_on_rough_metal(model_, renderer_, drawn, pixels_across(), demands, job_);
         for (size_t i = 0; i < uses_.size(); ++i)
             looks_[i].around = around[i];

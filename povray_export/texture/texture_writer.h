@@ -3,11 +3,13 @@
 #pragma once
 
 #include "base/maths.h"
+#include "light/light_around.h"
 #include "model/material.h"
 #include "povray_export/texture/picture_writer.h"
 
 #include <glm/vec4.hpp>
 
+#include <optional>
 #include <string>
 
 namespace lodestone::povray {
@@ -20,10 +22,17 @@ struct TexturedSurface {
     glm::dvec4 color{1.0};    // color of its vertices, linear; counts where the material uses it
     double sky = 1;           // share of a uniform sky's light that reaches it
     glm::dvec3 sky_hue{1.0};  // factors on that light
-    glm::dvec3 around{0.0};   // radiance of lit surfaces around, in the mean
+    glm::dvec3 around{0.0};   // radiance of lit surfaces around that reaches it
     bool layered = true;      // false: gloss is not a layer, but in the color of what is no picture
     bool flat = false;        // true: in one plane with to_uv; only there bumps are shown
     Affine to_uv;             // position to (u, v, height above the plane), where flat
+
+    /// Sets how much of the sky's light reaches it, where that is known (else all of it), and of the
+    /// surfaces around: what is not the sky is around.
+    void light(std::optional<double> sky_share, const light::LightAround& surfaces) {
+        sky = sky_share.value_or(1);
+        around = surfaces.radiance * (sky_share ? 1 - *sky_share : surfaces.part);
+    }
 };
 
 /// The text texture{...}. Shares (alpha, mixtures, maps of roughness and metallic) are weighted

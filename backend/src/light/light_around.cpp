@@ -32,11 +32,11 @@ glm::dvec3 lamp_light(const LitScene& scene, const std::vector<const Light*>& la
 
 }  // namespace
 
-std::vector<glm::dvec3> light_around(const Model& model, const RendererSurfaces& renderer,
-                                     std::span<const DrawnThing> drawn,
-                                     std::span<const AroundRequest> requests,
-                                     const LightDemands& demands, const Job& job) {
-    std::vector<glm::dvec3> out(requests.size(), glm::dvec3(0.0));
+std::vector<LightAround> light_around(const Model& model, const RendererSurfaces& renderer,
+                                      std::span<const DrawnThing> drawn,
+                                      std::span<const AroundRequest> requests,
+                                      const LightDemands& demands, const Job& job) {
+    std::vector<LightAround> out(requests.size());
     if (requests.empty())
         return out;
     const LitScene scene(model, renderer, drawn, job);
@@ -54,8 +54,9 @@ std::vector<glm::dvec3> light_around(const Model& model, const RendererSurfaces&
         for (const LitPoint& point : points) {
             const glm::dvec3 light = point.other_light + lamp_light(scene, lamps, point, random);
             if (finite(light))
-                out[i] += light / static_cast<double>(request.rays);
+                out[i].radiance += light / static_cast<double>(points.size());
         }
+        out[i].part = static_cast<double>(points.size()) / std::max(request.rays, 1);
     });
     return out;
 }

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <unordered_set>
 
 namespace lodestone::light {
 namespace {
@@ -56,24 +55,11 @@ constexpr double kInSoftEdges = 0.15;  // Fitted: as kFacing
 // The same where nothing is planned, to each lamp.
 // Fitted: as kFacing.
 constexpr double kRaysOfLamp = 1.1;
-// The most distinct triangles.
-// Taste: each takes 130 bytes while lights are chosen.
-constexpr uint64_t kMostTriangles = 2'000'000;
 // The share of the shadow rays to ungrouped lamps that a point may cost at most: POV-Ray remembers
 // for each lamp what last hid it, but not for the lamps of groups, whose shadows take up to 2.4
 // times as long.
 // Fitted: by tests/bench/speed/bench_lights.py, a house, a corridor and a market of 400 lamps each.
 constexpr double kWorth = 0.6;
-
-uint64_t distinct_triangles(std::span<const DrawnThing> drawn) {
-    std::unordered_set<Hash> known;
-    uint64_t count = 0;
-    for (const DrawnThing& lit : drawn) {
-        if (known.insert(lit.representation->summary.hash).second)
-            count += lit.representation->summary.cost.triangles;
-    }
-    return count;
-}
 
 /// The lights of each region, by nodes of the tree.
 struct RegionLights {
@@ -354,7 +340,7 @@ LightPlan plan_lights(const Model& model, const RendererSurfaces& renderer,
     };
     if (!ray::available())
         return strongest("no rays can be cast to find what each of them lights");
-    if (lamps > kMostLamps || distinct_triangles(drawn) > kMostTriangles) {
+    if (lamps > kMostLamps || LitScene::too_large(drawn)) {
         if (lamps > kMostUnchosen)
             return strongest("there are more of them, or of triangles, than can be looked through");
         if (plans_lamps && many)

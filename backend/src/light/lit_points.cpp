@@ -37,6 +37,10 @@ constexpr double kBeside = 8;
 // Law: positions are known to 1e-7 of it; this is a large margin.
 constexpr double kRelative = 1e-4;
 
+// The most distinct triangles.
+// Taste: each takes 130 bytes while rays are cast at it.
+constexpr uint64_t kMostTriangles = 2'000'000;
+
 // The places of a lamp that tell how much of it a point sees.
 // Law: its middle, and four around it.
 constexpr int kPlaces = 5;
@@ -147,6 +151,13 @@ LitScene::LitScene(const Model& model, const RendererSurfaces& renderer,
     least_ = 1e-6 * glm::length(seen_.box().size());
 }
 
+bool LitScene::too_large(std::span<const DrawnThing> drawn) {
+    uint64_t count = 0;
+    for (const uint32_t first : distinct_shapes(drawn).firsts)
+        count += drawn[first].representation->summary.cost.triangles;
+    return count > kMostTriangles;
+}
+
 LitScene::LitSurface LitScene::surface_of(const DrawnThing& lit, uint16_t slot) const {
     const std::vector<uint32_t>& materials = lit.representation->materials;
     const size_t index = slot < materials.size() ? materials[slot] : surfaces_.size();
@@ -199,51 +210,40 @@ std::vector<LitPoint> LitScene::followed(SightRay ray) const {
 }
 
 SightRay LitScene::sent_on(const glm::dvec3& from, const glm::dvec3& normal, PcgRandom& random) {
-    const double turn = 2 * std::numbers::pi * random.uniform();
-    const double out_of = random.uniform();  // the square of the sine
-    const glm::dvec3 u = perpendicular(normal);
-    const glm::dvec3 v = glm::cross(normal, u);
     SightRay ray;
     ray.origin = from;
-    ray.direction = std::sqrt(out_of) * (std::cos(turn) * u + std::sin(turn) * v) +
-                    std::sqrt(1 - out_of) * normal;
+    const double out_of = random.uniform();
+    ray.direction = measure::cosine_direction(normal, out_of, random.uniform());
     return ray;
 }
 
 std::vector<LitPoint> LitScene::surroundings(uint32_t drawn, int rays, PcgRandom& random) const {
-    const Affine& world = drawn_[drawn].world;
     const Mesh& mesh = *shapes_[shape_of_[drawn]].mesh;
+    const Affine& world = drawn_[drawn].world;
+    const double mirrored = glm::determinant(world.linear) < 0 ? -1 : 1;
+    RandomPlace places(mesh, world, random);
     std::vector<double> areas;
     areas.reserve(mesh.triangles.size());
     double area = 0;
-    const auto corner = [&](uint32_t triangle, int i) {
-        return world(glm::dvec3(mesh.positions[mesh.triangles[triangle][i]]));
-    };
-    const auto across = [&](uint32_t triangle) {
-        const glm::dvec3 a = corner(triangle, 0);
-        return glm::cross(corner(triangle, 1) - a, corner(triangle, 2) - a);
-    };
     for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const double own = glm::length(across(i));
+        const double own = glm::length(places.across(i));
         areas.push_back(area += std::isfinite(own) ? own : 0);
     }
     std::vector<LitPoint> out;
     if (!(area > 0) || !std::isfinite(area))
         return out;
-    const double mirrored = glm::determinant(world.linear) < 0 ? -1 : 1;
-    RandomPlace places(mesh, world, random);
     for (int i = 0; i < rays; ++i) {
-        const auto at =
-            std::upper_bound(areas.begin(), areas.end(), random.uniform() * area) - areas.begin();
+        const auto at = std::upper_bound(areas.begin(), areas.end(), random.uniform() * area);
         const auto triangle =
-            static_cast<uint32_t>(std::min<size_t>(static_cast<size_t>(at), areas.size() - 1));
-        const glm::dvec3 normal = mirrored * across(triangle);
-        if (!(glm::length(normal) > 0))
+            static_cast<uint32_t>(std::min<ptrdiff_t>(at - areas.begin(), std::ssize(areas) - 1));
+        const glm::dvec3 outward = mirrored * places.across(triangle);
+        const double twice = glm::length(outward);
+        if (!(twice > 0))
             continue;
-        const glm::dvec3 unit = glm::normalize(normal);
-        const glm::dvec3 from = places.point_on(triangle);
-        const double aside = std::max(least_, kRelative * std::sqrt(glm::length(normal)));
-        std::vector<LitPoint> seen = followed(sent_on(from + unit * aside, unit, random));
+        const glm::dvec3 normal = outward / twice;
+        const glm::dvec3 from =
+            places.point_on(triangle) + normal * std::max(least_, kRelative * std::sqrt(twice));
+        std::vector<LitPoint> seen = followed(sent_on(from, normal, random));
         if (!seen.empty())
             out.push_back(std::move(seen.back()));
     }

@@ -31,6 +31,10 @@ public:
     LitScene(const Model& model, const RendererSurfaces& renderer,
              std::span<const DrawnThing> drawn, const Job& job);
 
+    /// Whether there are more distinct triangles than rays are cast at: each takes memory and time
+    /// before the first ray.
+    static bool too_large(std::span<const DrawnThing> drawn);
+
     /// About `count` cells, with a ray through each; `region` of a point is the index of the drawn
     /// thing. `bounces`: further points from where the ray ends, each where light may come from.
     LitGrid points(const View& view, size_t count, int bounces, const Job& job) const;

@@ -31,13 +31,19 @@ public:
         for (int i = 0; i < kPicks; ++i) {
             const double at = random_.uniform() * static_cast<double>(triangles.size());
             chosen = triangles[std::min(static_cast<size_t>(at), triangles.size() - 1)];
-            const glm::dvec3 a = corner(chosen, 0);
-            const glm::dvec3 u = world_.linear * (corner(chosen, 1) - a);
-            const glm::dvec3 v = world_.linear * (corner(chosen, 2) - a);
-            if (glm::dot(glm::cross(u, v), way) > 0)
+            if (glm::dot(across(chosen), way) > 0)
                 break;
         }
         return chosen;
+    }
+
+    /// Across a triangle in the world, to the side from which its corners turn left; as long as twice
+    /// its area.
+    glm::dvec3 across(uint32_t triangle) const {
+        const glm::dvec3 a = corner(triangle, 0);
+        const glm::dvec3 u = world_.linear * (corner(triangle, 1) - a);
+        const glm::dvec3 v = world_.linear * (corner(triangle, 2) - a);
+        return glm::cross(u, v);
     }
 
     /// A place on a triangle, in the world.
