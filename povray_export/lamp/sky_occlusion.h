@@ -51,11 +51,12 @@ struct SkyOcclusionOptions {
 /// that rests, whatever the cut draws, so that shade does not change as the camera moves. A thing
 /// that is placed once has the shares of its corners as it stands there. What is placed more often
 /// has those of its own shape, times one of at most four grades of what is around its placement,
-/// which changes evenly over the thing. Boxes have the mean of their sides, or, where they are
-/// large in the picture, the light of each. Levels have the light of the outermost places near them
+/// which changes evenly over the thing. Boxes and ellipsoids have the mean of their sides, or, where
+/// they are large in the picture, the light of each. Levels have the light of the outermost places near them
 /// of their finest level, and what stands in for a group that of all below it. What moves in an
 /// animation hides the sky from itself alone, so that no frame needs rays anew; where a ground lies
-/// below it, it sees no sky there. In a still picture it rests.
+/// below it, it sees no sky there. In a picture alone it rests, what is opaque has the light of the
+/// side that the camera sees, and the largest copies that of where they stand.
 class SkyOcclusion {
 public:
     /// Where rays cannot be cast or there is too much, nothing is occluded, and a problem says so.

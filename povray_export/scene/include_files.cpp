@@ -82,10 +82,10 @@ size_t IncludeFiles::add(const Representation& representation, const Representat
     std::optional<int>& least = include.options.outline;
     if (least)
         least = std::min(*least, step);
-    // Glass is a body, of which rays need all sides. Ellipsoids may be written as other triangles
-    // than those that were looked at.
+    // Glass is a body, of which rays need all sides. Solids may be written as other triangles than
+    // those that were looked at.
     const bool known = options.textures && !bends_light(representation) &&
-                       representation.summary.kind != Kind::Ellipsoid;
+                       needed.size() == light::drawn_triangles(representation);
     include.needed.add(known ? needed : std::span<const uint8_t>{});
     return at->second;
 }

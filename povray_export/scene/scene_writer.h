@@ -27,7 +27,8 @@ struct ExportOptions {
     // them), lights and world, and a transparent film: the picture's alpha says which pixels are
     // covered.
     bool covered_only = false;
-    /// Whether it is a picture alone: what moves in an animation is lit by the sky as what rests.
+    /// Whether it is a picture alone: what moves in an animation is lit by the sky as what rests, and
+    /// what is opaque on the side that is seen.
     bool still = false;
     /// The error up to which lights are approximated, in pixels, in place of the view's Pixel
     /// Error; 0: all lights as they are.

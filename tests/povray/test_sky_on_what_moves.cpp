@@ -37,6 +37,20 @@ protected:
         return out;
     }
 
+    /// The light on an object, where all things are so many pixels across.
+    SkyLightPtr light_on(ObjectIndex object, double pixels) {
+        const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
+        SkyOcclusionOptions options;
+        options.pixels_across = [pixels](const Bound&) { return pixels; };
+        Problems problems;
+        const SkyOcclusion light(builder.model, cut, options, problems, {});
+        for (size_t i = 0; i < cut.chosen.size(); ++i) {
+            if (cut.nodes[cut.chosen[i]].object == object)
+                return light.of(i);
+        }
+        return nullptr;
+    }
+
     Builder builder;
 };
 using SkyOnSides = SkyOnWhatMoves;
@@ -154,22 +168,11 @@ TEST_F(SkyOnSides, SidesOfABoxThatIsLargeInThePictureHaveLightOfTheirOwn) {
     const ObjectIndex box = builder.primitive(Kind::Box, primitive, {builder.matte({1, 1, 1})});
     builder.place(box, at(0, 0, 1));
     builder.place(builder.mesh(shapes::quad(40, 40)), at(-20, -20, -.01));
-    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
-    const auto on_box = [&](bool large) {
-        SkyOcclusionOptions options;
-        options.pixels_across = [large](const Bound&) { return large ? 100.0 : 1.0; };
-        Problems problems;
-        const SkyOcclusion light(builder.model, cut, options, problems, {});
-        for (size_t i = 0; i < cut.chosen.size(); ++i) {
-            if (cut.nodes[cut.chosen[i]].object == box)
-                return light.of(i);
-        }
-        return SkyLightPtr{};
-    };
-    ASSERT_TRUE(on_box(false));
-    EXPECT_FALSE(on_box(false)->shares);
-    EXPECT_NEAR(on_box(false)->factor, .5, .05);
-    const SkyLightPtr sides = on_box(true);
+    const SkyLightPtr even = light_on(box, 1);
+    ASSERT_TRUE(even);
+    EXPECT_FALSE(even->shares);
+    EXPECT_NEAR(even->factor, .5, .05);
+    const SkyLightPtr sides = light_on(box, 100);
     ASSERT_TRUE(sides && sides->shares);
     const Mesh mesh = tessellate_box(primitive);
     ASSERT_EQ(sides->shares->corners.size(), 3 * mesh.triangles.size());
@@ -205,23 +208,11 @@ TEST_F(SkyOnSides, AnEllipsoidThatIsLargeInThePictureIsShaded) {
         builder.primitive(Kind::Ellipsoid, Primitive{}, {builder.matte({1, 1, 1})});
     builder.place(ball, at(0, 0, 1));
     builder.place(builder.mesh(shapes::quad(400, 400)), at(-200, -200, -.01));
-    const choose::Cut cut = choose::choose_cut(builder.finish(), scenes::above());
-    const auto on_ball = [&](double pixels) {
-        SkyOcclusionOptions options;
-        options.pixels_across = [pixels](const Bound&) { return pixels; };
-        Problems problems;
-        const SkyOcclusion light(builder.model, cut, options, problems, {});
-        for (size_t i = 0; i < cut.chosen.size(); ++i) {
-            if (cut.nodes[cut.chosen[i]].object == ball)
-                return light.of(i);
-        }
-        return SkyLightPtr{};
-    };
-    const SkyLightPtr even = on_ball(10);
+    const SkyLightPtr even = light_on(ball, 10);
     ASSERT_TRUE(even);
     EXPECT_FALSE(even->shares);
     EXPECT_NEAR(even->factor, 0.5, 0.05);
-    const SkyLightPtr shaded = on_ball(100);
+    const SkyLightPtr shaded = light_on(ball, 100);
     ASSERT_TRUE(shaded && shaded->shares);
     const Mesh mesh = light::drawn_mesh(builder.model.objects[ball].representations[0]);
     ASSERT_EQ(mesh.triangles.size(), 1280u);

@@ -1152,8 +1152,10 @@ typedef struct lds_povray_options {
                          0: all of it reaches everything; usual 128, with OFF none. Nothing with
                          bounces, which do it */
     int32_t still; /* 1: a picture alone: what moves in an animation shades what is around it, and
-                      is shaded, as if it rested. Usual 0: so that no frame needs rays anew, it
-                      hides the sky from itself alone */
+                      is shaded, as if it rested, faces that are seen from behind have the sky's
+                      light of that side, and the largest copies that of where they stand. Usual 0:
+                      so that no frame needs rays anew, what moves hides the sky from itself alone,
+                      and nothing changes with the camera */
     double filter_size; /* pixels: of the Blackman-Harris filter that blurs the picture, as Cycles'
                            and Eevee's do (usually 1.5 there); usual 0: each pixel is what its
                            square shows. Never where false_color or covered_only is set, nor in

@@ -57,7 +57,9 @@ class PovrayOptions:
     sky_rays: int = 0
     filter_size: float = 0.0
     bake_folder: str | None = None  # keeps what sky_rays found; None: the scene's folder
-    still: bool = False  # a picture alone: the sky lights what moves in an animation as what rests
+    # A picture alone: the sky lights what moves in an animation as what rests, and opaque faces on
+    # the side that is seen.
+    still: bool = False
 
     def struct(self) -> structs.PovrayOptions:
         out = structs.PovrayOptions()

@@ -385,7 +385,7 @@ bool SkySampler::lies_below_backs(const SkyPlace& place) const {
     if (alone && !request_.horizon.upright)
         return true;
     const glm::dvec3 up = alone ? request_.horizon.up : glm::dvec3(0, 0, 1);
-    const glm::dvec3 side = glm::normalize(perpendicular(up));
+    const glm::dvec3 side = perpendicular(up);
     const glm::dvec3 other = glm::cross(up, side);
     SkyRay low = ray(place, false);
     int backs = 0;
