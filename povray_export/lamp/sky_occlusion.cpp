@@ -21,7 +21,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 22;
+constexpr uint32_t kBakeVersion = 23;
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
@@ -355,6 +355,7 @@ private:
         request.known = wanted.found.get();
         request.horizon = horizon_of(wanted);
         request.uneven = options_.uneven.get();
+        request.round = wanted.representation->summary.kind == Kind::Ellipsoid;
         if (wanted.placed != nullptr) {
             request.world = wanted.placed->world;
             request.around = &*around_;

@@ -16,7 +16,7 @@ namespace {
 // The version of the text: raised whenever the text for the same input changes, for files are found
 // again by their name alone.
 // Law: part of every file's hash.
-constexpr uint32_t kWriterVersion = 22;
+constexpr uint32_t kWriterVersion = 23;
 
 /// The text of one solid; nothing for one without size.
 std::string solid_text(const Model& model, const Representation& representation, const Solid& solid,

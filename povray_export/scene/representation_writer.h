@@ -4,7 +4,7 @@
 
 #include "base/job.h"
 #include "model/model.h"
-#include "povray_export/lamp/rough_metal.h"
+#include "povray_export/lamp/lit_surroundings.h"
 #include "povray_export/lamp/sky_occlusion.h"
 #include "povray_export/mesh/detail_bands.h"
 #include "povray_export/mesh/mask_outlines.h"
@@ -34,7 +34,7 @@ struct RepresentationOptions {
     bool coarse_crowds = true;
     ShownTrianglesPtr shown = {};    // of a mesh; null: all of it
     SkyLightPtr sky = {};            // the sky's light on it; null: all of it
-    light::LightAround around = {};  // lit surfaces around, which rough metal shows
+    light::LightAround around = {};  // lit surfaces around, which gloss and rough metal show
     /// True: lamps of groups light it, for which POV-Ray casts shadow rays anew for each texture that
     /// a point has. So it has one where it can: without a layer of gloss, and with one share of the
     /// sky a triangle.

@@ -9,7 +9,6 @@
 #include "light/light_plan.h"
 #include "povray_export/lamp/light_writer.h"
 #include "povray_export/lamp/renderer_surfaces.h"
-#include "povray_export/lamp/rough_metal.h"
 #include "povray_export/lamp/scene_lights.h"
 #include "povray_export/lamp/scene_sky.h"
 #include "povray_export/mesh/pixel_field.h"
@@ -195,7 +194,7 @@ private:
     struct UseLook {
         bool textures = false;
         SkyLightPtr sky;
-        light::LightAround around;  // that rough metal shows
+        light::LightAround around;  // that gloss and rough metal show
     };
 
     /// Lets each use be drawn from a file.
@@ -340,20 +339,21 @@ private:
         return povray::light_sampling(shading_, options_.antialiasing, view_.camera);
     }
 
-    /// How many pixels each use is across; 0: it is not seen as it is.
-    std::vector<double> pixels_across() const {
-        std::vector<double> pixels;
-        pixels.reserve(uses_.size());
+    /// How each use is seen that shows what is around it.
+    std::vector<SurroundedThing> surrounded() const {
+        std::vector<SurroundedThing> out;
+        out.reserve(uses_.size());
         for (size_t i = 0; i < uses_.size(); ++i) {
             const size_t position = uses_[i].position;
             const bool seen =
                 looks_[i].textures && position != kNoPosition && needs_.seen(position);
-            pixels.push_back(seen ? 2 * bounds_[i].radius / pixels_.at(bounds_[i]) : 0);
+            out.push_back(
+                {seen ? 2 * bounds_[i].radius / pixels_.at(bounds_[i]) : 0, looks_[i].sky});
         }
-        return pixels;
+        return out;
     }
 
-    /// Chooses lights by what the camera sees, and finds what rough metal shows.
+    /// Chooses lights by what the camera sees, and finds what gloss shows.
     void plan_lights() {
         report_.lights_each = static_cast<double>(report_.lamps);
         if (!lit())
@@ -365,7 +365,7 @@ private:
             light_demands(sky(), shading_, light_sampling(),
                           options_.light_error.value_or(view_.pixel_error), lights);
         const std::vector<light::LightAround> around =
-            light_on_rough_metal(model_, renderer_, drawn, pixels_across(), demands, job_);
+            lit_surroundings(model_, renderer_, drawn, surrounded(), demands, job_);
         for (size_t i = 0; i < uses_.size(); ++i)
             looks_[i].around = around[i];
         if (options_.light_error == 0.0)

@@ -176,18 +176,24 @@ void append_grazing_pigment(std::string& out, const CoveredGloss& gloss) {
 
 /// The numbers of a finish that depend on how the gloss is drawn.
 struct GlossScale {
-    double ambient;
+    double sky;        // what it shows of all around
     double highlight;  // times what it is
     double growth;     // POV-Ray's metallic
 };
 
-void append_grazing_finish(std::string& out, const GrazingGloss& gloss, const GlossScale& scale) {
+void append_grazing_finish(std::string& out, const GrazingGloss& gloss, const GlossLight& light,
+                           const GlossScale& scale) {
     const auto named = [&](const char* name, double value) {
         out += name;
         append_number(out, value, 6);
     };
-    named("finish{ambient ", scale.ambient);
-    named(" emission 0 diffuse 0 specular albedo ", gloss.highlight * scale.highlight);
+    named("finish{ambient ", light.sky * scale.sky);
+    out += " emission ";
+    if (light.around == glm::dvec3(0.0))
+        out += '0';
+    else
+        append_rgb(out, light.around * scale.sky);
+    named(" diffuse 0 specular albedo ", gloss.highlight * scale.highlight);
     named(" roughness ", gloss.roughness);
     named(" metallic ", scale.growth);
     out += " reflection{rgb 0}}";
@@ -226,7 +232,7 @@ std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look) {
     return out;
 }
 
-GlossText gloss_alone(const GrazingGloss& gloss, double sky, double times) {
+GlossText gloss_alone(const GrazingGloss& gloss, const GlossLight& light, double times) {
     const CoveredGloss plain{gloss.grow, {}};
     const CoveredGloss layer = covered_gloss(gloss);
     // The highlight of the layer follows another pigment: it is to grow as much at kSame.
@@ -234,16 +240,16 @@ GlossText gloss_alone(const GrazingGloss& gloss, double sky, double times) {
         gloss.lamp_growth * (layer.white[kSame] - 1) / std::max(gloss.grow[kSame] - 1, 1e-3);
     GlossText out;
     append_grazing_pigment(out.pigment, plain);
-    append_grazing_finish(out.finish, gloss, {gloss.sky * sky * times, times, growth});
+    append_grazing_finish(out.finish, gloss, light, {gloss.sky * times, times, growth});
     return out;
 }
 
-GlossText gloss_layer(const GrazingGloss& gloss, double sky) {
+GlossText gloss_layer(const GrazingGloss& gloss, const GlossLight& light) {
     const CoveredGloss layer = covered_gloss(gloss);
     GlossText out;
     append_grazing_pigment(out.pigment, layer);
-    append_grazing_finish(out.finish, gloss,
-                          {gloss.sky * sky / (1 - layer.through[0]), 1, gloss.lamp_growth});
+    append_grazing_finish(out.finish, gloss, light,
+                          {gloss.sky / (1 - layer.through[0]), 1, gloss.lamp_growth});
     out.below = 1 / layer.through[0];
     return out;
 }

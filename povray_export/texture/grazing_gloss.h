@@ -29,6 +29,12 @@ struct GrazingGloss {
 /// none, and of what is so smooth that it mirrors its surroundings.
 std::optional<GrazingGloss> grazing_gloss(const SurfaceLook& look);
 
+/// The light that gloss shows.
+struct GlossLight {
+    double sky = 1;          // the share of a uniform sky's light that arrives
+    glm::dvec3 around{0.0};  // radiance of lit surfaces around that does
+};
+
 /// The texts of gloss. Bumps of the surface belong between the two.
 struct GlossText {
     std::string pigment;  // pigment{...}
@@ -36,10 +42,9 @@ struct GlossText {
     double below = 1;     // the factor on the finish of the surface below
 };
 
-/// The gloss alone, `times` as strong: white that grows with the angle of view. `sky`: the share of a
-/// uniform sky's light that arrives.
-GlossText gloss_alone(const GrazingGloss& gloss, double sky, double times);
+/// The gloss alone, `times` as strong: white that grows with the angle of view.
+GlossText gloss_alone(const GrazingGloss& gloss, const GlossLight& light, double times);
 /// The gloss as a layer over the matte surface, which shines through by angle.
-GlossText gloss_layer(const GrazingGloss& gloss, double sky);
+GlossText gloss_layer(const GrazingGloss& gloss, const GlossLight& light);
 
 }  // namespace lodestone::povray

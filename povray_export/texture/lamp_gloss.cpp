@@ -89,7 +89,7 @@ std::optional<LampGloss> lamp_gloss(const SurfaceLook& look) {
 }
 
 LampGlossText lamp_gloss_text(const LampGloss& gloss, const glm::dvec3& color, const Finish& finish,
-                              double sky) {
+                              const GlossLight& light) {
     // Law: POV-Ray's pattern is 1 for what faces the eye, and 1/2 at no angle.
     constexpr double kFacing = 1;
     // Law: degrees of half a turn, over which the pattern falls to 0.
@@ -107,17 +107,20 @@ LampGlossText lamp_gloss_text(const LampGloss& gloss, const glm::dvec3& color, c
     out.pigment += '}';
     out.finish = finish;
     out.finish.diffuse *= kDarkened;
-    out.finish.glow *= kDarkened;
-    for (int i = 0; i < 3; ++i) {
-        // The gloss of the sky is exact at the angle where it is brightest for such a pigment, and
-        // nowhere brighter than it is.
-        double ambient = std::numeric_limits<double>::infinity();
+    // Gloss is exact at the angle where it is brightest for such a pigment, and nowhere brighter than
+    // it is.
+    const auto answer = [&](double matte, double arriving, double channel) {
+        double least = std::numeric_limits<double>::infinity();
         for (size_t k = 0; k < gloss.white.size(); ++k) {
-            const double whole = finish.ambient[i] * color[i] * gloss.matte[k] + sky * gloss.sky[k];
-            const double pigment = color[i] * gloss.matte[k] + gloss.white[k];
-            ambient = std::min(ambient, whole / std::max(pigment, kLeastColor));
+            const double whole = matte * channel * gloss.matte[k] + arriving * gloss.sky[k];
+            const double pigment = channel * gloss.matte[k] + gloss.white[k];
+            least = std::min(least, whole / std::max(pigment, kLeastColor));
         }
-        out.finish.ambient[i] = kDarkened * ambient;
+        return kDarkened * least;
+    };
+    for (int i = 0; i < 3; ++i) {
+        out.finish.ambient[i] = answer(finish.ambient[i], light.sky, color[i]);
+        out.finish.glow[i] = answer(finish.glow[i], light.around[i], color[i]);
     }
     out.finish.specular = gloss.highlight;
     out.finish.roughness = gloss.roughness;

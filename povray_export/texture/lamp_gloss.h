@@ -33,9 +33,8 @@ struct LampGlossText {
     Finish finish;
 };
 
-/// `finish`: of the surface, whose highlight is replaced. `sky`: the share of a uniform sky's light
-/// that arrives.
+/// `finish`: of the surface, whose highlight is replaced.
 LampGlossText lamp_gloss_text(const LampGloss& gloss, const glm::dvec3& color, const Finish& finish,
-                              double sky);
+                              const GlossLight& light);
 
 }  // namespace lodestone::povray

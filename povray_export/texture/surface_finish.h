@@ -35,12 +35,16 @@ SurfaceLook look_of(const Material& material);
 
 /// The finish of a look, found by fitting: tests/bench/peers/fit_finish.py. Smooth surfaces mirror their
 /// surroundings (traced); rough ones answer the sky with `ambient`, which does not have the white
-/// part: that is white_sky().
+/// part: that is white_gloss().
 Finish finish_of(const SurfaceLook& look);
 
-/// The radiance that a uniform sky of 1 comes back with from a surface that is not metal, whatever
-/// the base color: the reflection of the rough surface and of a rough clear coat.
-double white_sky(const SurfaceLook& look);
+/// The radiance that surroundings of 1, as a uniform sky, come back with from a surface that is not
+/// metal, whatever the base color: the reflection of the rough surface and of a rough clear coat.
+double white_gloss(const SurfaceLook& look);
+
+/// The part of the light of lit surfaces around that the matt surface below gloss sends on although no
+/// light bounces, in the color of the pigment; `gray`: about how bright that is.
+double carried_by_gloss(const SurfaceLook& look, double gray);
 
 /// Appends finish{...}, with every value written, because POV-Ray's defaults (ambient 0.1, diffuse
 /// 0.6) would leak in. `light` scales all of it; other emission (times the pigment) comes on top.

@@ -60,6 +60,10 @@ double even_scale(const Texture& texture) {
                : 1;
 }
 
+// The brightness of a picture's colors, about.
+// Taste: a larger value lets lit surfaces around light pictures more where no light bounces.
+constexpr double kUsualGray = 0.35;
+
 /// The inside of texture{...} or of an entry of a texture_map.
 using Body = std::string;
 
@@ -82,7 +86,7 @@ public:
             return "texture{" + solid(material, surface) + '}';
         std::string layers = "texture{" + surface.pigment;
         if (surface.gloss) {
-            const GlossText gloss = gloss_layer(*surface.gloss, share(surface_.sky, 1));
+            const GlossText gloss = gloss_layer(*surface.gloss, arriving());
             append_finish(layers, surface.finish, gloss.below, glm::dvec3(0.0));
             layers += "} texture{" + pictures_.declared_pigment(gloss.pigment) + ' ';
             return pictures_.layered(layers + normal(material) + gloss.finish + '}');
@@ -117,8 +121,11 @@ private:
         /// The white gloss, if it follows the angle of view: then it is not in the finish.
         std::optional<GrazingGloss> gloss;
         glm::dvec3 white{0.0};  // the answer to a uniform sky, if there is no such gloss
-        glm::dvec3 even{0.0};   // emission
+        glm::dvec3 even{0.0};   // emission, and the same answer to lit surfaces around
     };
+
+    /// The light that gloss shows.
+    GlossLight arriving() const { return {share(surface_.sky, 1), surface_.around}; }
 
     bool shown(const Texture& texture) const { return texture && surface_.uvs; }
 
@@ -319,13 +326,17 @@ private:
         out.finish = finish_of(below);
         const double sky = share(surface_.sky, 1);
         out.finish.ambient *= brightness * sky * surface_.sky_hue;
-        out.finish.glow = out.finish.around * brightness * surface_.around;
+        const double gray = image ? kUsualGray : glm::dot(base * paint, glm::dvec3(1.0 / 3));
+        out.finish.glow =
+            (out.finish.around + carried_by_gloss(look, gray)) * brightness * surface_.around;
         out.finish.diffuse *= brightness;
         out.finish.specular *= std::lerp(1.0, brightness, out.finish.metallic);
         // The part that has not the color of the pigment, and is the same all over.
-        if (!out.gloss)
-            out.white = white_sky(look) * sky * surface_.sky_hue;
         out.even = out.lamp ? glm::dvec3(0.0) : emission;
+        if (!out.gloss) {
+            out.white = white_gloss(look) * sky * surface_.sky_hue;
+            out.even += white_gloss(look) * surface_.around;
+        }
         out.plain =
             out.gloss || (image && (out.white != glm::dvec3(0.0) || out.even != glm::dvec3(0.0)));
         std::optional<LampGloss> lamps;
@@ -333,7 +344,7 @@ private:
             lamps = lamp_gloss(look);
         out.pigment = "pigment{";
         if (lamps) {
-            LampGlossText text = lamp_gloss_text(*lamps, base * paint, out.finish, sky);
+            LampGlossText text = lamp_gloss_text(*lamps, base * paint, out.finish, arriving());
             out.pigment = std::move(text.pigment);
             out.finish = text.finish;
         } else if (image) {
@@ -369,7 +380,7 @@ private:
         if (surface.lamp)
             entries.emplace_back(1, glow(material.emission_texture, parts));
         if (surface.gloss) {
-            const GlossText gloss = gloss_alone(*surface.gloss, share(surface_.sky, 1), parts);
+            const GlossText gloss = gloss_alone(*surface.gloss, arriving(), parts);
             entries.emplace_back(1, gloss.pigment + ' ' + normal(material) + gloss.finish);
         } else if (surface.plain) {
             Finish rest;

@@ -24,6 +24,8 @@ public:
     /// Adds a triangle's shares; all triangles are added in turn. `area`: placed, of any unit;
     /// `behind`: the shares are those of its back.
     void add(size_t triangle, const TriangleShares& shares, double area, bool behind = false);
+    /// Lets corners side by side tell each other what their rays met, once all are added.
+    void share_rays();
     /// Writes the bytes of all corners and the mean; `shares` are all that were added.
     void finish(std::span<const TriangleShares> shares, SkyShares& out) const;
 
@@ -49,6 +51,7 @@ private:
         UnevenLight uneven;
         bool opaque = true;
 
+        void add(const GroupShares& other);
         /// The share of the side that is seen. See of_side_that_is_seen().
         double share(const UnevenSky* sky) const;
     };

@@ -46,6 +46,9 @@ struct SkyRequest {
     /// Whether it is the floor of all: nobody sees what is below it, so it is split if it is a box,
     /// too.
     bool floor = false;
+    /// Whether it is round all over, as a ball: corners side by side share their rays, for the light
+    /// on them differs little.
+    bool round = false;
 };
 
 /// Sums over rays of the light of an uneven sky, in parts of its color.

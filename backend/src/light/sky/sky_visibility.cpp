@@ -292,6 +292,8 @@ private:
                 sampler_.placed(split_.mesh(), i);
             corners.add(i, shares_[i], placed ? placed->area : 0, behind(i));
         }
+        if (request_.round)
+            corners.share_rays();
         corners.finish(shares_, out);
         return out;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Guards what leaves answer to whose places are lit unevenly.
+// Guards what leaves answer to whose places are lit unevenly, and what corners share.
 #include "backend/light/sky/sky_places.h"
 #include "light/sky/corner_shares.h"
 
@@ -87,4 +87,33 @@ TEST_F(CornerSharesTest, LeavesThatAreLitEvenlyStayAsTheyAre) {
     EXPECT_NEAR(mean(60, true, false), 1, 0.01);
     // Of one card the rays are too few to tell.
     EXPECT_LT(mean(1, true), 0.72);
+}
+
+// Balls in a room with few windows had blotches.
+TEST_F(CornerSharesTest, CornersOfWhatIsRoundShareTheirRays) {
+    const auto above = [](const glm::dvec3& offset) { return Affine{glm::dmat3(1.0), offset}; };
+    const Mesh ball = shapes::sphere(1, 3);
+    const SkyPlace place(*this,
+                         {{builder.mesh(ball), above({0, 0, 2})},
+                          {builder.mesh(shapes::quad(4000, 4000)), above({-2000, -2000, 0})}});
+    SkyRequest request{place.surfaces.of(*place.occluders[0].representation),
+                       above({0, 0, 2}),
+                       &*place.scene,
+                       0,
+                       8,
+                       0};
+    const auto off = [&](bool round) {
+        request.round = round;
+        const SkyShares shares = sky_shares(request, {});
+        EXPECT_NEAR(shares.mean, 0.5, 0.03);
+        double sum = 0;
+        for (size_t i = 0; i < shares.corners.size(); ++i) {
+            const uint32_t vertex = ball.triangles[i / 3][static_cast<int>(i % 3)];
+            // The floor is all that is below: the cosine-weighted share is (1 + cos e) / 2.
+            const double cosine = ball.positions[vertex].z / glm::length(ball.positions[vertex]);
+            sum += std::abs(share_of_byte(shares.corners[i]) - (1 + cosine) / 2);
+        }
+        return sum / static_cast<double>(shares.corners.size());
+    };
+    EXPECT_LT(off(true), 0.6 * off(false));
 }
