@@ -2,6 +2,9 @@
 #include "povray_export/occurrence/picture_needs.h"
 
 #include "base/error.h"
+#include "base/maths.h"
+#include "choose/criterion.h"
+#include "choose/view_pyramid.h"
 #include "light/light_arrival.h"
 #include "light/light_plan.h"
 #include "povray_export/scene/camera_writer.h"
@@ -9,6 +12,7 @@
 #include "ray/mesh_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -25,6 +29,23 @@ constexpr uint64_t kMostTriangles = 2'000'000;
 /// Taste: a byte for each.
 constexpr uint64_t kMostPlaced = uint64_t{1} << 28u;
 
+/// The share of the picture that the bounds of all that is drawn cover, at most.
+double covered_by_bounds(const Model& model, const choose::Cut& cut, const View& view) {
+    const choose::ViewPyramid pyramid(view);
+    double pixels = 0;
+    for (const uint32_t chosen : cut.chosen) {
+        const choose::CutNode& node = cut.nodes.at(chosen);
+        const Representation& drawn = model.objects.at(node.object).representations.at(node.lod);
+        const Bound bound = transformed(drawn.summary.bound, cut.world(node));
+        if (drawn.summary.kind == Kind::Assembly || pyramid.outside(bound))
+            continue;
+        const double pixel = choose::pixel_size(view, distance(bound, view.camera.position));
+        const double across = bound.radius / pixel;
+        pixels += std::isfinite(across) ? kPi * across * across : kInfinity;
+    }
+    return std::min(1.0, pixels / (double(view.width) * double(view.height)));
+}
+
 /// Whether the picture is worth looking through: that takes less than what it may spare. To many
 /// lamps the picture itself casts many times as many rays, and each thing on their way counts.
 bool pays(const View& view, uint64_t triangles, std::span<const Light> lights) {
@@ -39,6 +60,7 @@ bool pays(const View& view, uint64_t triangles, std::span<const Light> lights) {
 void PictureNeeds::find(const Model& model, const light::RendererSurfaces& renderer,
                         const choose::Cut& cut, const View& view, std::span<const Light> lights,
                         const Job& job) {
+    bounds_cover_ = covered_by_bounds(model, cut, view);
     if (view.modifiers.off_screen == OffScreen::Full || !(view.pixel_error > 0) ||
         has_depth_blur(view.camera) || !ray::available())
         return;

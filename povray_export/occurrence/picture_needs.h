@@ -30,8 +30,8 @@ public:
     }
     /// The bytes of POV-Ray's memory that are not taken for what is not needed, about.
     uint64_t bytes_left_out() const { return bytes_left_out_; }
-    /// The share of the picture where anything is seen; 1 where that is not known.
-    double covered() const { return parts_ ? parts_->covered() : 1; }
+    /// The share of the picture where anything is seen; by what bounds cover where that is not known.
+    double covered() const { return parts_ ? parts_->covered() : bounds_cover_; }
     /// The needs for each triangle of its mesh, as bits of light::SeenParts; empty: all are needed.
     std::span<const uint8_t> triangles(size_t position) const {
         return known(position) ? parts_->triangles(drawn_[position]) : std::span<const uint8_t>{};
@@ -47,6 +47,7 @@ private:
     std::optional<light::SeenParts> parts_;
     std::vector<uint32_t> drawn_;  // by position
     uint64_t bytes_left_out_ = 0;
+    double bounds_cover_ = 1;
 };
 
 }  // namespace lodestone::povray

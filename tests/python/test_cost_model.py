@@ -30,17 +30,18 @@ CAMERA = Camera("C", False, (0, 0, 2), (0, 1, 0), (1, 0, 0), (0, 0, 0.5), 0.1, a
 class Cost(unittest.TestCase):
     def test_nothing_to_draw_takes_the_start_and_the_empty_picture(self):
         found = cost_model.predict(cost_model.Work(0, 0, 0, 640, 360, 0, 1, 1))
-        self.assertEqual((found.parse_cpu_s, found.trace_cpu_s, found.wall_s), (0, 0, 0.6))
+        self.assertEqual((found.parse_cpu_s, found.trace_cpu_s, found.wall_s), (0, 0, 0.7))
         self.assertAlmostEqual(found.peak_bytes / 1e6, 18 + 3.6864, places=6)
 
     def test_texts_and_pictures_are_read_and_kept_as_was_measured(self):
         found = cost_model.predict(WORK)
-        self.assertAlmostEqual(found.parse_cpu_s, 95 * 0.055 + 10 * 0.023)
+        self.assertAlmostEqual(found.parse_cpu_s, 95 * 0.059 + 10 * 0.025)
         kept = 18 + 3.6864 + 3.85 * 95 + 2.57 * 10
         self.assertAlmostEqual(found.peak_bytes / 1e6, kept, places=5)
-        # 2.24e-9 * 1e8^.5 * 1.15 each, 1 + .44 * 9 samples a pixel
-        self.assertAlmostEqual(found.trace_cpu_s, 230400 * 4.96 * 2.24e-5 * 1.15)
-        self.assertAlmostEqual(found.wall_s, 0.6 + found.parse_cpu_s + found.trace_cpu_s / 2)
+        # 3.08e-9 * (text + 5.4e5)^.5 * 1.13 each, 1 + .44 * 9 samples a pixel
+        each = 3.08e-9 * math.sqrt(95.54e6) * 1.13
+        self.assertAlmostEqual(found.trace_cpu_s, 230400 * 4.96 * each)
+        self.assertAlmostEqual(found.wall_s, 0.7 + found.parse_cpu_s + found.trace_cpu_s / 2)
 
     def test_a_picture_of_much_sky_takes_less(self):
         whole = cost_model.predict(WORK).trace_cpu_s
@@ -119,7 +120,9 @@ class Cost(unittest.TestCase):
         self.assertAlmostEqual(grown, 38_500_000)
         self.assertAlmostEqual(work(texels=1_000_010).bytes - work().bytes, 2_570_000)
         ratio = cost_model.predict(work(shadow_rays=20.0)).trace_cpu_s
-        self.assertAlmostEqual(ratio / cost_model.predict(work()).trace_cpu_s, 4.0)
+        self.assertAlmostEqual(ratio / cost_model.predict(work()).trace_cpu_s, 3.6)
+        ratio = cost_model.predict(work(shadow_rays=20.0, lamp_rays=20.0)).trace_cpu_s
+        self.assertAlmostEqual(ratio / cost_model.predict(work()).trace_cpu_s, 9.2)
 
     def test_the_same_picture_again_is_predicted_exactly(self):
         measured = SimpleNamespace(parse_cpu_s=9.0, trace_cpu_s=4.0, peak_bytes=400_000_000)
@@ -132,9 +135,17 @@ class Cost(unittest.TestCase):
     def test_what_is_too_short_or_absurd_teaches_nothing(self):
         before = cost_model.Ratios(2.0, 3.0, 1.5)
         short = SimpleNamespace(parse_cpu_s=0.01, trace_cpu_s=math.nan, peak_bytes=0)
-        self.assertEqual(cost_model.learn(WORK, short, before), before)
+        little = replace(WORK, text_bytes=10**5, texels=0)
+        self.assertEqual(cost_model.learn(little, short, before), before)
+        unknown = SimpleNamespace(parse_cpu_s=0.0, trace_cpu_s=0.0, peak_bytes=0)
+        self.assertEqual(cost_model.learn(WORK, unknown, before), before)
         mad = SimpleNamespace(parse_cpu_s=1e9, trace_cpu_s=1.0, peak_bytes=1)
         self.assertEqual(cost_model.learn(WORK, mad, before).parse, 100.0)
+
+    def test_a_picture_that_was_much_faster_than_expected_taught_nothing(self):
+        fast = SimpleNamespace(parse_cpu_s=0.02, trace_cpu_s=0.02, peak_bytes=0)
+        ratios = cost_model.learn(replace(WORK, text_bytes=10**6), fast, cost_model.Ratios())
+        self.assertLess(ratios.trace, 0.1)
 
     def test_ratios_are_kept_beside_the_levels_and_survive_nonsense(self):
         with tempfile.TemporaryDirectory() as folder:

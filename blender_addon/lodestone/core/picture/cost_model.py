@@ -3,7 +3,8 @@
 one before.
 
 POV-Ray reads the texts and pictures that an export wrote, and keeps them: both take as long and as
-much as they are large. A sample takes longer with the root of the texts and with each shadow ray.
+much as they are large. A sample takes longer with the root of the texts and with each shadow ray;
+those to lamps are many near each other, and cost more than those to suns.
 Measured on one machine, in tracks of SuperTuxKart and generated nights; cost.json beside the levels
 keeps by how much the last picture of each camera differed. Not known before is how often rays go on
 through masks that are not cut out: where dead trees fill the picture it takes three times as long.
@@ -22,13 +23,13 @@ from ..native import lodestone_native as native
 from .quality_tree import Quality
 
 FILE = "cost.json"
-_MODEL = 3  # ratios to what another model foretold say nothing
+_MODEL = 4  # ratios to what another model foretold say nothing
 # To read a byte of text and a texel; what they take in memory
-_TEXT_S, _TEXEL_S = 5.5e-8, 2.3e-8
+_TEXT_S, _TEXEL_S = 5.9e-8, 2.5e-8
 _TEXT_BYTES, _TEXEL_BYTES = 3.85, 2.57
 # A sample takes this, times the root of the texts in bytes, of which the first make no difference
-_SAMPLE_S, _FEWEST_TEXT = 2.24e-9, 5e6
-_SHADOW_SHARE = 0.15  # a shadow ray beside a sample
+_SAMPLE_S, _FEWEST_TEXT = 3.08e-9, 5.4e5
+_SHADOW_SHARE, _LAMP_SHARE = 0.13, 0.41  # a shadow ray to a sun and to a lamp, beside a sample
 _SKY_SHARE = 0.1  # a sample that meets nothing beside one that does
 _OBJECT_BYTES = 760  # of an object, besides what its line in scene.pov counts as
 _GATHERED = 0.125  # places a pixel where light is gathered, at an error of 1
@@ -42,7 +43,7 @@ _BLURRED: dict[
     native.Antialias.FINAL: 56.0,
     native.Antialias.REFERENCE: 191.0,
 }
-_START_S = 0.6  # seconds by the clock, whatever is rendered
+_START_S = 0.7  # seconds by the clock, whatever is rendered
 _EMPTY_BYTES, _PIXEL_BYTES = 18e6, 16
 _LEAST_S = 0.05  # shorter times tell nothing
 _MOST = 100.0  # a picture whose ratio is larger was disturbed
@@ -150,7 +151,8 @@ def gathering(bounces: int, rays: int, error: float) -> float:
 def predict(work: Work, ratios: Ratios = Ratios()) -> Prediction:
     parse = (_TEXT_S * work.text_bytes + _TEXEL_S * work.texels) * ratios.parse
     each = _SAMPLE_S * math.sqrt(_FEWEST_TEXT + work.text_bytes)
-    each *= 1.0 + _SHADOW_SHARE * work.shadow_rays
+    others = max(0.0, work.shadow_rays - work.lamp_rays)
+    each *= 1.0 + _SHADOW_SHARE * others + _LAMP_SHARE * work.lamp_rays
     seen = work.covered + _SKY_SHARE * (1.0 - work.covered)
     drawn = seen * work.pixels * (work.samples + work.gathering)
     trace = drawn * each * ratios.of_trace(work)
@@ -167,7 +169,8 @@ def learn(work: Work, measured: native.records.PovrayReport, before: Ratios) -> 
     empty = predict(Work(0, 0, 0, work.width, work.height, 0, work.antialias, 1)).peak_bytes
 
     def ratio(found: float, expected: float, least: float, old: float) -> float:
-        if found < least or not expected > 0.0 or not math.isfinite(found):
+        told = found > 0.0 and math.isfinite(found) and max(found, expected) >= least
+        if not told or not expected > 0.0:
             return old
         return min(_MOST, max(1.0 / _MOST, found / expected))
 

@@ -108,7 +108,7 @@ _KINDS = (
     _Kind(
         "lamps",
         _words_of_lamps,
-        lambda work: replace(work, shadow_rays=work.shadow_rays - work.lamp_rays),
+        lambda work: replace(work, shadow_rays=work.shadow_rays - work.lamp_rays, lamp_rays=0.0),
         _of_lamps,
     ),
     _Kind(
