@@ -25,10 +25,10 @@ constexpr double kLeastShown = 0.1;
 constexpr size_t kMostAroundRays = 256;
 constexpr size_t kFewestAroundRays = 8;     // Taste: as kMostAroundRays
 constexpr size_t kAllAroundRays = 100'000;  // Taste: as kMostAroundRays
-// The rays of all copies that are not, and about those of all such things; the copies that cast
+// The rays of all copies that are no metal, and about those of all such things; the copies that cast
 // them. They show a tenth of what rough metal does.
 // Taste: as kMostAroundRays.
-constexpr size_t kMostMattRays = 32;
+constexpr size_t kMostMattRays = 256;
 constexpr size_t kAllMattRays = 10'000;  // Taste: as kMostAroundRays
 constexpr size_t kMattCopies = 8;        // Taste: more know more of the places of copies
 // The steps of the light in an octave.

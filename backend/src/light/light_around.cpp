@@ -8,6 +8,11 @@
 namespace lodestone::light {
 namespace {
 
+// The most luminance that one ray tells: where a lamp nearly touches a wall few rays end, which would
+// tell anything.
+// Law: Cycles' own limit of indirect light (Clamping, Indirect Light).
+constexpr double kMostOfRay = 10;
+
 /// The light of lamps that a point sends on: of one by chance, rather a strong one, for all.
 glm::dvec3 lamp_light(const LitScene& scene, const std::vector<const Light*>& lamps,
                       const LitPoint& point, PcgRandom& random) {
@@ -48,13 +53,14 @@ std::vector<LightAround> light_around(const Model& model, const RendererSurfaces
     parallel_for(requests.size(), [&](size_t i) {
         job.check();
         const AroundRequest& request = requests[i];
-        PcgRandom random(i);
+        PcgRandom random(request.drawn);  // in whatever order they are asked for
         std::vector<LitPoint> points = scene.surroundings(request.drawn, request.rays, random);
         scene.add_other_light(demands, points, job);
         for (const LitPoint& point : points) {
             const glm::dvec3 light = point.other_light + lamp_light(scene, lamps, point, random);
+            const double over = std::max(1.0, luminance(light) / kMostOfRay);
             if (finite(light))
-                out[i].radiance += light / static_cast<double>(points.size());
+                out[i].radiance += light / (over * static_cast<double>(points.size()));
         }
         out[i].part = static_cast<double>(points.size()) / std::max(request.rays, 1);
     });

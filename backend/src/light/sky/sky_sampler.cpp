@@ -16,7 +16,13 @@ namespace {
 // A triangle that sees less may lie inside of something.
 // Taste: a larger value looks more often, for eight rays each.
 constexpr double kDark = 0.06;
-constexpr int kDarkRays = 8;  // Taste: more tell better whether it does
+// The rays that meet a near back for it to do so, and those that do not for it not to.
+// Taste: more tell it better; most dark triangles lie in the shade alone.
+constexpr int kInsideRays = 4;
+constexpr int kOutsideRays = 4;  // Taste: as kInsideRays
+// The hidden rays of a triangle that are looked at for near backs, where none of them meets one.
+// Taste: more find smaller parts of triangles inside of something; looking takes as long as casting.
+constexpr int kLooks = 12;
 // Triangles side by side take different parts of the Sobol sequence, so that a corner is told about
 // as much as if all of its rays were one triangle's.
 // Taste: about the triangles at a corner; more parts are less even where these are few.
@@ -170,6 +176,8 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
     const uint32_t first = static_cast<uint32_t>(triangle % kParts) * static_cast<uint32_t>(rays);
     uint32_t blocker = ray::PlacedScenes::kNothing;
     uint32_t near = ray::kNoTriangle;
+    int looks = 0;
+    bool any_inside = false;
     // Rays are cast in pairs: from one point to both sides of the normal, or from both sides of
     // the triangle. Where one of the first kind begins inside of something, so does the other.
     for (int i = 0; i < rays; i += 2) {
@@ -195,9 +203,12 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
             passed += part;
             seen += own;
             back = both ? own : 0;  // of the second one
-            inside = inside || (!both && part == 0 && one.open && light(one) > 0 &&
-                                meets_near_back(one, reach) && lies_below_backs(place));
+            const bool look = !inside && !both && part == 0 && one.open && light(one) > 0 &&
+                              (any_inside || looks < kLooks);
+            looks += look ? 1 : 0;
+            inside = inside || (look && meets_near_back(one, reach) && lies_below_backs(place));
         }
+        any_inside = any_inside || inside;
         if (request_.uneven != nullptr)
             uneven.expected = expected(place, both, uneven.open);
         out.passed += inside ? 0 : passed;
@@ -338,18 +349,17 @@ SkySampler::SkyPlace SkySampler::again(const SkyPlace& place, uint64_t seed) {
 
 bool SkySampler::lies_inside(const Mesh& mesh, size_t triangle,
                              const PlacedTriangle& placed) const {
-    constexpr int kHalf = kDarkRays / 2;  // Law: so many decide it
     int backs = 0;
     int others = 0;
     uint32_t near = ray::kNoTriangle;
-    while (backs < kHalf && others <= kHalf) {
+    while (backs < kInsideRays && others < kOutsideRays) {
         const auto number = static_cast<uint32_t>(backs + others);
         const SkyPlace from = place(mesh, triangle, placed, number, near);
         const bool back =
             meets_near_back(ray(from, false), size_ * enlarged_) && lies_below_backs(from);
         ++(back ? backs : others);
     }
-    return backs == kHalf;
+    return backs == kInsideRays;
 }
 
 void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangle& placed, int rays,
@@ -389,16 +399,18 @@ bool SkySampler::lies_below_backs(const SkyPlace& place) const {
     const glm::dvec3 other = glm::cross(up, side);
     SkyRay low = ray(place, false);
     int backs = 0;
-    for (int i = 0; i < kLowRays; ++i) {
+    int others = 0;
+    for (int i = 0; 2 * std::max(backs, others) <= kLowRays; ++i) {
         const double turn = 2 * kPi * (place.point[2] + i / double{kLowRays});
         const glm::dvec3 flat = std::cos(turn) * side + std::sin(turn) * other;
         low.direction = kLowHeight * up + flat;
         if (glm::dot(low.direction, place.up) < 0)
             low.direction = kLowHeight * up - flat;
         low.direction = glm::normalize(low.direction);
-        backs += glm::dot(low.direction, place.up) < 0 || meets_near_back(low, kInfinity) ? 1 : 0;
+        const bool back = glm::dot(low.direction, place.up) < 0 || meets_near_back(low, kInfinity);
+        ++(back ? backs : others);
     }
-    return 2 * backs > kLowRays;
+    return backs > others;
 }
 
 bool SkySampler::meets_near_back(const SkyRay& ray, double reach) const {
