@@ -163,10 +163,10 @@ std::vector<light::LightAround> lit_surroundings(const Model& model,
                                                  const light::RendererSurfaces& renderer,
                                                  std::span<const light::DrawnThing> drawn,
                                                  std::span<const SurroundedThing> things,
-                                                 const light::LightDemands& demands,
+                                                 const light::LightDemands& demands, bool still,
                                                  const Job& job) {
     std::vector<light::LightAround> out(drawn.size());
-    AroundGroups groups(model, drawn, things, demands.bounces == 0);
+    AroundGroups groups(model, drawn, things, still && demands.bounces == 0);
     const std::vector<light::AroundRequest> requests = groups.requests();
     if (requests.empty() || light::LitScene::too_large(drawn))
         return out;

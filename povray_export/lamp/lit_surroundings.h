@@ -16,14 +16,15 @@ struct SurroundedThing {
 };
 
 /// The lit surfaces around each drawn thing, in steps; none around things that are too small to show
-/// them. Copies under one light of the sky have one, those of rough metal few. Where light bounces,
-/// only rough metal has any: all else has them from there. Where rays cannot be cast, or there is too
+/// them. Copies under one light of the sky have one, those of rough metal few. Only rough metal has
+/// any where light bounces, for all else has them from there, and in frames of an animation, where
+/// what moves would change all files around it: `still` says that it is a picture alone. Where rays cannot be cast, or there is too
 /// much to cast them at, there are none. Throws Error(Cancelled).
 std::vector<light::LightAround> lit_surroundings(const Model& model,
                                                  const light::RendererSurfaces& renderer,
                                                  std::span<const light::DrawnThing> drawn,
                                                  std::span<const SurroundedThing> things,
-                                                 const light::LightDemands& demands,
+                                                 const light::LightDemands& demands, bool still,
                                                  const Job& job);
 
 }  // namespace lodestone::povray

@@ -365,7 +365,7 @@ private:
             light_demands(sky(), shading_, light_sampling(),
                           options_.light_error.value_or(view_.pixel_error), lights);
         const std::vector<light::LightAround> around =
-            lit_surroundings(model_, renderer_, drawn, surrounded(), demands, job_);
+            lit_surroundings(model_, renderer_, drawn, surrounded(), demands, options_.still, job_);
         for (size_t i = 0; i < uses_.size(); ++i)
             looks_[i].around = around[i];
         if (options_.light_error == 0.0)

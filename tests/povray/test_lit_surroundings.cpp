@@ -23,7 +23,7 @@ class SurroundingsShown : public WithRays {
 protected:
     /// The light around a ball of a material, so many pixels across, and around others of it.
     std::vector<light::LightAround> light(const Material& material, double pixels, int copies = 1,
-                                          double sky = 0, int bounces = 0) {
+                                          double sky = 0, int bounces = 0, bool still = true) {
         scenes::Builder builder;
         builder.model.lights.push_back(scenes::sun(kPi));
         const ObjectIndex floor = builder.mesh(shapes::quad(200, 200));
@@ -39,7 +39,7 @@ protected:
         demands.sky = glm::dvec3(sky);
         demands.bounces = bounces;
         return lit_surroundings(model, renderer_surfaces(model), drawn,
-                                things(drawn.size(), pixels), demands, {});
+                                things(drawn.size(), pixels), demands, still, {});
     }
     static std::vector<SurroundedThing> things(size_t count, double pixels) {
         return std::vector<SurroundedThing>(count, {pixels, nullptr});
@@ -76,6 +76,12 @@ TEST_F(SurroundingsShown, WhereLightBouncesOnlyRoughMetalShowsThem) {
     EXPECT_GT(light(metal(1, 0.5), 100, 1, 0, 1)[1].radiance.x, 0.2);
 }
 
+// Each frame of an animation wrote anew what stood near something that moved.
+TEST_F(SurroundingsShown, InFramesOnlyRoughMetalShowsThem) {
+    EXPECT_EQ(light(metal(0, 0.5), 100, 1, 0, 0, false)[1].radiance, glm::dvec3(0.0));
+    EXPECT_GT(light(metal(1, 0.5), 100, 1, 0, 0, false)[1].radiance.x, 0.2);
+}
+
 // Each light of a copy is a file.
 TEST_F(SurroundingsShown, CopiesUnderOneSkyHaveOneLight) {
     const std::vector<light::LightAround> found = light(metal(0, 0.5), 100, 3);
@@ -99,7 +105,7 @@ TEST_F(SurroundingsShown, CopiesUnderOneSkyHaveOneLight) {
     light::LightDemands demands;
     demands.suns = model.lights;
     const std::vector<light::LightAround> apart =
-        lit_surroundings(model, renderer_surfaces(model), drawn, seen, demands, {});
+        lit_surroundings(model, renderer_surfaces(model), drawn, seen, demands, true, {});
     EXPECT_NE(apart[1].radiance, apart[2].radiance);
 }
 
@@ -124,10 +130,10 @@ TEST_F(SurroundingsShown, WhereThereIsTooMuchItShowsNothing) {
         {&model.objects[ball].representations[0], {glm::dmat3(1.0), {0, 0, 3}}}};
     light::LightDemands demands;
     demands.suns = model.lights;
-    EXPECT_EQ(
-        lit_surroundings(model, renderer_surfaces(model), drawn, things(2, 100), demands, {})[1]
-            .radiance,
-        glm::dvec3(0.0));
+    EXPECT_EQ(lit_surroundings(model, renderer_surfaces(model), drawn, things(2, 100), demands,
+                               true, {})[1]
+                  .radiance,
+              glm::dvec3(0.0));
 }
 
 TEST(SurroundingsShownText, WhatIsNotTheSkyIsAround) {
