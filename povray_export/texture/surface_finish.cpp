@@ -188,7 +188,7 @@ double white_gloss(const SurfaceLook& look) {
 double carried_by_gloss(const SurfaceLook& look, double gray) {
     // Fitted: Cycles of Blender 3.4 in a lit ball, roughness 0.3 ... 1, grays of 0.2 ... 0.8, facing:
     // it counts what gloss sends on as no bounce of matt light, and lets it carry matt light, too, the
-    // more the brighter the surface is. More at flat angles.
+    // more the brighter the surface is. More at flat angles. The script was not kept.
     constexpr double kCarried = 0.085;
     return kCarried * gray * std::min(1.0, (1 - look.metallic) * look.specular / 0.5);
 }

@@ -347,6 +347,7 @@ private:
             LampGlossText text = lamp_gloss_text(*lamps, base * paint, out.finish, arriving());
             out.pigment = std::move(text.pigment);
             out.finish = text.finish;
+            out.even = glm::dvec3(0.0);  // its finish has what gloss shows
         } else if (image) {
             Texture texture = material.base_color_texture;
             if (painted > 0)

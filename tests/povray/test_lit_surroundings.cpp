@@ -3,6 +3,7 @@
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/lit_surroundings.h"
 #include "povray_export/lamp/renderer_surfaces.h"
+#include "povray_export/texture/lamp_gloss.h"
 #include "povray_export/texture/texture_writer.h"
 #include "scenes/with_rays.h"
 
@@ -182,6 +183,15 @@ TEST(SurroundingsShownText, GlossAndTheMattSurfaceBelowGlow) {
     Material matt = metal(0, 0.5);
     matt.specular = 0;
     EXPECT_EQ(text_around(matt, {0.5, 0.5, 1}), text_around(matt, glm::dvec3(0.0)));
+    // In a texture alone what gloss shows was added once more, as emission.
+    const Material paint = metal(0, 0.5);
+    Finish finish = finish_of(paint);
+    finish.glow = glm::dvec3(carried_by_gloss(paint, 0.6));
+    const LampGlossText expected =
+        lamp_gloss_text(*lamp_gloss(paint), paint.base_color, finish, {1, glm::dvec3(1.0)});
+    const std::string alone = text_around(paint, {1, 1, 1}, false);
+    EXPECT_NEAR(std::stod(alone.substr(alone.find("emission rgb <") + 14)), expected.finish.glow.x,
+                1e-3 * expected.finish.glow.x);
     // 0.085 of the gray of 0.6, over the 0.735 that the gloss lets through.
     const std::string layers = text_around(metal(0, 0.5), {1, 1, 1});
     EXPECT_NE(layers.find("emission rgb <0.06936,"), std::string::npos) << layers;

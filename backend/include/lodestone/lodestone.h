@@ -1153,9 +1153,9 @@ typedef struct lds_povray_options {
                          bounces, which do it */
     int32_t still; /* 1: a picture alone: what moves in an animation shades what is around it, and
                       is shaded, as if it rested, faces that are seen from behind have the sky's
-                      light of that side, and the largest copies that of where they stand. Usual 0:
-                      so that no frame needs rays anew, what moves hides the sky from itself alone,
-                      and nothing changes with the camera */
+                      light of that side, the largest copies have that of where they stand, and gloss
+                      shows the lit surfaces around. Usual 0: so that no frame needs rays anew, what
+                      moves hides the sky from itself alone, and nothing changes with the camera */
     double filter_size; /* pixels: of the Blackman-Harris filter that blurs the picture, as Cycles'
                            and Eevee's do (usually 1.5 there); usual 0: each pixel is what its
                            square shows. Never where false_color or covered_only is set, nor in

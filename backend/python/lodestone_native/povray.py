@@ -58,7 +58,7 @@ class PovrayOptions:
     filter_size: float = 0.0
     bake_folder: str | None = None  # keeps what sky_rays found; None: the scene's folder
     # A picture alone: the sky lights what moves in an animation as what rests, and opaque faces on
-    # the side that is seen.
+    # the side that is seen; gloss shows lit surfaces around.
     still: bool = False
 
     def struct(self) -> structs.PovrayOptions:

@@ -14,7 +14,7 @@ namespace lodestone::light {
 namespace {
 
 // A triangle that sees less may lie inside of something.
-// Taste: a larger value looks more often, for eight rays each.
+// Taste: a larger value looks more often, for up to seven rays each, and as many times three flat ones.
 constexpr double kDark = 0.06;
 // The rays that meet a near back for it to do so, and those that do not for it not to.
 // Taste: more tell it better; most dark triangles lie in the shade alone.
