@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <unordered_map>
 
 namespace lodestone::light {
 namespace {
@@ -83,6 +85,14 @@ private:
     glm::dvec3 from_{0.0};
 };
 
+// The times that as many rays are cast again, at most, until half as many leave the surface: of a dense
+// tree one in twelve does, and only these tell what is around it.
+// Taste: a larger value tells what is around denser things, for rays that tell nothing.
+constexpr int kMostRounds = 8;
+// How far the places of one round lie from those of the last, in parts of the way between two.
+// Law: the golden ratio, whose multiples lie nowhere close together.
+constexpr double kGoldenPart = 0.6180339887498949;
+
 // The numbers of each of the means that are kept.
 // Law: of another number of them, a list of means is damaged.
 constexpr size_t kNumbers = 8;
@@ -101,10 +111,21 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     MeanSums inside;
     PassedRays passed;
     LeafSums leaves;
+    std::unordered_map<size_t, bool> looked;  // by triangle, whether it lies inside of something
+    const auto lies_inside = [&](size_t triangle, const SkySampler::PlacedTriangle& placed) {
+        const auto [at, fresh] = looked.try_emplace(triangle);
+        if (fresh)
+            at->second = sampler.lies_inside(mesh, triangle, placed);
+        return at->second;
+    };
+    int left = 0;  // rays that the surface itself does not stop
     uint32_t blocker = ray::PlacedScenes::kNothing;
     uint32_t near = ray::kNoTriangle;
-    for (int i = 0; i < rays; ++i) {
-        const size_t triangle = request.surface.triangle_at((i + 0.5) / rays);
+    for (int i = 0; i < kMostRounds * rays; ++i) {
+        if (i % rays == 0 && 2 * left >= rays)
+            break;
+        const double part = std::fmod(0.5 + (i / rays) * kGoldenPart, 1.0);
+        const size_t triangle = request.surface.triangle_at((i % rays + part) / rays);
         if (triangle >= areas.size())
             continue;
         const std::optional<SkySampler::PlacedTriangle> placed = sampler.placed(mesh, triangle);
@@ -121,6 +142,7 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
         const SkySampler::SkyRay ray = sampler.ray(place, both && i % 2 == 1);
         const double light = ray.open ? sampler.light(ray) : 0;
         const double alone = light > 0 && !sampler.hidden_alone(ray) ? light : 0;
+        left += alone > 0 ? 1 : 0;
         // A placement sees all or nothing of the sky below, on the average as much.
         const double seen = alone > 0 && !sampler.hidden(ray, blocker) ? 1 : 0;
         const double placed_light = seen > 0 ? weight * seen * sampler.brightness(ray, true) : 0;
@@ -135,7 +157,7 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
             side.rays += weight;
             ++leaves.count;
         }
-        if (seen == 0 && !both && sampler.lies_inside(mesh, triangle, *placed)) {
+        if (seen == 0 && !both && lies_inside(triangle, *placed)) {
             inside.alone += alone_light;
             inside.rays += weight;
         } else if (alone > 0) {
