@@ -21,7 +21,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 24;
+constexpr uint32_t kBakeVersion = 25;
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;

@@ -38,7 +38,10 @@ constexpr double kLongEnough = 0.7;
 // Taste: more tell better where to split.
 constexpr int kFewestRays = 8;
 constexpr int kFewestPart = 8;  // Taste: as kFewestRays, the other way round
-// The rays of a triangle that is not seen, for the mean of all.
+// The triangles that are not seen and have rays of their own, for the mean of all, about.
+// Taste: a larger value tells the mean better; nobody sees these.
+constexpr size_t kUnseenTriangles = 64;
+// The rays of each of them.
 // Taste: the fewest, for rays are cast in pairs.
 constexpr int kUnseenRays = 2;
 
@@ -87,6 +90,7 @@ public:
 
 private:
     /// Finds the triangles that have all rays: what is seen, and what shares a corner with that.
+    /// Of the others it chooses some that stand for all.
     void find_thorough() {
         if (request_.seen.empty())
             return;
@@ -100,10 +104,36 @@ private:
             const auto near = [&](int corner) { return corners[split_.welded()[t[corner]]] != 0; };
             thorough_.push_back(near(0) || near(1) || near(2) ? 1 : 0);
         }
+        choose_unseen();
+    }
+    /// Chooses triangles that are not seen evenly by their areas.
+    void choose_unseen() {
+        const std::vector<double>& areas = request_.surface.areas;
+        unseen_.assign(thorough_.size(), 0);
+        double all = 0;
+        for (size_t i = 0; i < thorough_.size(); ++i)
+            all += thorough_[i] == 0 ? areas[i] - (i > 0 ? areas[i - 1] : 0) : 0;
+        double passed = 0;
+        size_t chosen = 0;
+        for (size_t i = 0; i < thorough_.size(); ++i) {
+            const double own = areas[i] - (i > 0 ? areas[i - 1] : 0);
+            if (thorough_[i] != 0 || !(own > 0))
+                continue;
+            passed += own;
+            const size_t before = chosen;
+            while ((static_cast<double>(chosen) + 0.5) * all < passed * kUnseenTriangles)
+                ++chosen;
+            const double stands_for = static_cast<double>(chosen - before) / kUnseenTriangles * all;
+            unseen_[i] = stands_for / own;
+        }
     }
     /// Whether a triangle of the split mesh has all rays.
     bool thorough(size_t triangle) const {
         return thorough_.empty() || thorough_[sources_[triangle]] != 0;
+    }
+    /// The areas as large as its own that a triangle of the split mesh stands for.
+    double area_factor(size_t triangle) const {
+        return thorough(triangle) ? 1 : unseen_[sources_[triangle]];
     }
     /// Whether what is seen of a triangle of the split mesh is its back.
     bool behind(size_t triangle) const {
@@ -201,9 +231,12 @@ private:
             job_.check();
             const ray::FlushDenormals fast;
             const size_t end = std::min(triangles.size(), (block + 1) * kBlock);
-            for (size_t i = block * kBlock; i < end; ++i)
-                shares_[triangles[i]] = sampler_.shares(mesh, triangles[i], rays_of(triangles[i]),
-                                                        behind(triangles[i]));
+            for (size_t i = block * kBlock; i < end; ++i) {
+                const uint32_t triangle = triangles[i];
+                if (area_factor(triangle) > 0)
+                    shares_[triangle] =
+                        sampler_.shares(mesh, triangle, rays_of(triangle), behind(triangle));
+            }
         });
     }
 
@@ -290,7 +323,7 @@ private:
         for (size_t i = 0; i < shares_.size(); ++i) {
             const std::optional<SkySampler::PlacedTriangle> placed =
                 sampler_.placed(split_.mesh(), i);
-            corners.add(i, shares_[i], placed ? placed->area : 0, behind(i));
+            corners.add(i, shares_[i], placed ? area_factor(i) * placed->area : 0, behind(i));
         }
         if (request_.round)
             corners.share_rays();
@@ -305,6 +338,9 @@ private:
     size_t most_;
     std::vector<uint32_t> sources_;  // by triangle: that of the surface which it is a part of
     std::vector<uint8_t> thorough_;  // by triangle of the surface; empty: all are
+    /// By triangle as `thorough_`, where it is not: the areas as large as its own that it stands
+    /// for. 0: another one stands for it.
+    std::vector<double> unseen_;
     std::vector<TriangleShares> shares_;
     std::vector<uint32_t> around_;  // triangles at each welded vertex
     std::vector<std::vector<geometry::WeldedEdge>> splits_;
