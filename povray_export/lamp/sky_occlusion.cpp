@@ -21,7 +21,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 25;
+constexpr uint32_t kBakeVersion = 26;
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
@@ -100,8 +100,10 @@ private:
         const MeansOfPlacements* means = nullptr;  // null: it stands once, or moves
         light::SkyHorizon horizon;                 // of what moves
         Hash key = 0;                              // where it is kept
-        /// By triangle, 1: any of the things shows it. Empty: all count as shown.
+        /// By triangle, what any of the things shows: bytes of light::SkyShares::seen. Empty: all
+        /// count as shown.
         std::vector<uint8_t> seen;
+        bool sized = false;  // with their sizes in the picture
         SeenSides sides;
         std::vector<uint8_t> behind;                    // by triangle, 1: its back is seen
         int rays = 0;                                   // of a corner
@@ -210,40 +212,41 @@ private:
             wanted.seen.clear();
         for (size_t k = 0; k < wanted.seen.size(); ++k) {
             if ((needs[k] & light::kSeen) != 0)
-                wanted.seen[k] = 1;
+                wanted.seen[k] = light::kSeenOfAnySize;
         }
         const SkyThing& thing = all_.things()[i];
         const Representation& drawn = *thing.representation;
         if (options_.camera != nullptr && drawn.summary.kind == Kind::Mesh && drawn.resident())
-            wanted.sides.add(drawn.mesh(), thing.world,
-                             transformed(drawn.summary.bound, thing.world), *options_.camera,
-                             needs);
+            wanted.sides.add(drawn.mesh(), thing.world, *options_.camera, options_.pixels, needs);
     }
 
     /// The triangles of a surface that count as seen.
     static uint64_t seen_of(const WantedShares& wanted) {
-        return wanted.seen.empty() ? light::drawn_triangles(*wanted.representation)
-                                   : static_cast<uint64_t>(std::count(
-                                         wanted.seen.begin(), wanted.seen.end(), uint8_t{1}));
+        if (wanted.seen.empty())
+            return light::drawn_triangles(*wanted.representation);
+        const auto unseen = std::count(wanted.seen.begin(), wanted.seen.end(), uint8_t{0});
+        return wanted.seen.size() - static_cast<uint64_t>(unseen);
     }
 
-    /// Chooses the rays of all surfaces by what is seen of them.
+    /// Chooses the rays of all surfaces by what is seen of them: where its size in the picture is
+    /// known, by that.
     void choose_rays() {
         std::vector<uint64_t> counts;
         std::vector<uint64_t> all;
         for (auto& [key, wanted] : wanted_shares_) {
             wanted.behind = wanted.sides.behind();
             all.push_back(light::drawn_triangles(*wanted.representation));
-            if (static_cast<double>(seen_of(wanted)) >
-                kMostSeen * static_cast<double>(wanted.seen.size()))
+            wanted.sized = wanted.sides.add_sizes(wanted.seen);
+            if (!wanted.sized && static_cast<double>(seen_of(wanted)) >
+                                     kMostSeen * static_cast<double>(wanted.seen.size()))
                 wanted.seen.clear();
-            counts.push_back(seen_of(wanted));
+            counts.push_back(wanted.sized ? 0 : seen_of(wanted));
         }
         const int usual = std::max(options_.rays / kOfLargest, 1);
         const CornerRays rays(usual, counts, options_.pixels);
         const CornerRays whole_rays(usual, all, options_.pixels);
         for (auto& [key, wanted] : wanted_shares_) {
-            wanted.rays = rays.of(seen_of(wanted));
+            wanted.rays = wanted.sized ? usual : rays.of(seen_of(wanted));
             wanted.whole_rays = whole_rays.of(light::drawn_triangles(*wanted.representation));
         }
     }

@@ -22,9 +22,9 @@ inline constexpr std::string_view kSkyVersion = "LDSSKY03";
 
 /// The choices for sky occlusion.
 struct SkyOcclusionOptions {
-    int rays = 128;             // that tell the share of a corner, of a scene that is not large
-    double pixels = kInfinity;  // of the picture: more triangles have fewer rays each
-    bool still = false;         // what moves in an animation rests
+    int rays = 128;       // that tell the share of a corner, of a scene that is not large
+    double pixels = 1e9;  // of the picture: smaller triangles have fewer rays each
+    bool still = false;   // what moves in an animation rests
     /// The camera of a picture alone: what is opaque has the light of the side that it sees, and the
     /// largest copies that of where they stand. Null: nothing changes as the camera moves.
     const Camera* camera = nullptr;

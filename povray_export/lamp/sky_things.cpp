@@ -196,8 +196,8 @@ std::vector<uint8_t> SkyThings::largest_copies(const std::function<double(size_t
     std::vector<uint8_t> out(things_.size(), 0);
     double rest = triangles_of_copies();
     for (const auto& [across, i] : order) {
-        const auto triangles =
-            static_cast<double>(light::drawn_triangles(*things_[i].representation));
+        // Of the finest level, so that the same copies have them at all Pixel Errors.
+        const auto triangles = static_cast<double>(light::drawn_triangles(finest_of(things_[i])));
         if (triangles > rest)
             continue;
         rest -= triangles;

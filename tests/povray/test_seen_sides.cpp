@@ -25,18 +25,12 @@ Camera from(const glm::dvec3& place) {
     return camera;
 }
 
-Bound bound_of(const Mesh& mesh, const Affine& world = {}) {
-    Bound bound;
-    for (const glm::vec3& position : mesh.positions)
-        bound.box.add(glm::dvec3(position));
-    bound.radius = glm::length(bound.box.size()) / 2;
-    return transformed(bound, world);
-}
+constexpr double kPixels = 10'000;
 
 std::vector<uint8_t> behind(const Mesh& mesh, const Camera& camera, const Affine& world = {},
                             std::span<const uint8_t> seen = {}) {
     SeenSides sides;
-    sides.add(mesh, world, bound_of(mesh, world), camera, seen);
+    sides.add(mesh, world, camera, kPixels, seen);
     return sides.behind();
 }
 
@@ -114,9 +108,9 @@ TEST(SeenSides, OfCopiesTheLargestTell) {
     const Affine far{glm::dmat3(1.0), {0, 0, -20}};
     SeenSides sides;
     const Camera camera = from({0, 0, 1});
-    sides.add(sheet, far, bound_of(sheet, far), camera, {});
+    sides.add(sheet, far, camera, kPixels, {});
     EXPECT_TRUE(sides.behind().empty());
-    sides.add(sheet, near, bound_of(sheet, near), camera, {});
+    sides.add(sheet, near, camera, kPixels, {});
     EXPECT_EQ(sides.behind(), std::vector<uint8_t>(2, 1));
 }
 

@@ -30,8 +30,9 @@ struct SkyRequest {
     /// places of it that the level shows, for it lies behind some of its boards and before others.
     /// Null: it is the finest one, or there is none.
     const SkySurface* original = nullptr;
-    /// By triangle of the surface, 1: it is seen. The others have few rays, and are not split.
-    /// Empty: all are seen.
+    /// By triangle of the surface, how much a picture shows of it: bytes of SkyShares::seen. Corners
+    /// have as many rays as are seen; what is not seen has few, and is not split. Empty: all are
+    /// seen.
     std::span<const uint8_t> seen = {};
     /// By triangle of the surface, 1: it is opaque and seen from behind, so that its share is that
     /// of its back. Empty: none is.

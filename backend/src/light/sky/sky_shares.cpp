@@ -37,6 +37,20 @@ private:
     std::string_view rest_;
 };
 
+// The byte of the size of a pixel.
+// Law: about the middle of the bytes.
+constexpr double kOnePixel = 128;
+// The octaves of a size by which what was found for a smaller thing still does.
+// Taste: a larger value finds less anew as a camera comes nearer, with up to twice the noise.
+constexpr int kOctavesAlike = 2;
+
+/// Whether rays for one size are enough for another.
+bool enough(uint8_t found, uint8_t wanted) {
+    if (found == kSeenOfAnySize || wanted == kSeenOfAnySize || found == 0)
+        return found == kSeenOfAnySize;
+    return found + kOctavesAlike >= wanted;
+}
+
 }  // namespace
 
 uint8_t share_byte(double share) {
@@ -58,6 +72,15 @@ uint8_t tint_byte(double part, double luminance) {
 
 double octaves_of_tint(uint8_t byte) {
     return (static_cast<double>(byte) - 128) / kTintSteps;
+}
+
+uint8_t size_byte(double pixels) {
+    const double octaves = pixels > 0 ? std::log2(pixels) : -kInfinity;
+    return static_cast<uint8_t>(std::lround(limited(kOnePixel + octaves, kSeenOfAnySize + 1, 255)));
+}
+
+double pixels_of_size(uint8_t byte) {
+    return std::exp2(byte - kOnePixel);
 }
 
 std::string SkyShares::bytes() const {
@@ -136,14 +159,17 @@ bool covers(const SkyShares& shares, std::span<const uint8_t> seen,
         if (!one.empty() && one.size() != count)
             return false;  // those of another mesh
     }
-    const auto marked = [](std::span<const uint8_t> bytes, size_t i, bool otherwise) {
-        return bytes.empty() ? otherwise : bytes[i] != 0;
+    const auto size = [](std::span<const uint8_t> bytes, size_t i) {
+        return bytes.empty() ? kSeenOfAnySize : bytes[i];
+    };
+    const auto back = [](std::span<const uint8_t> bytes, size_t i) {
+        return !bytes.empty() && bytes[i] != 0;
     };
     for (size_t i = 0; i < count; ++i) {
-        if (!marked(seen, i, true))
+        if (size(seen, i) == 0)
             continue;
-        if (!marked(shares.seen, i, true) ||
-            marked(behind, i, false) != marked(shares.behind, i, false))
+        if (!enough(size(shares.seen, i), size(seen, i)) ||
+            back(behind, i) != back(shares.behind, i))
             return false;
     }
     return true;

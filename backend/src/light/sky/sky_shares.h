@@ -31,6 +31,12 @@ inline constexpr double kTintSteps = 16;
 uint8_t tint_byte(double part, double luminance);
 double octaves_of_tint(uint8_t byte);
 
+/// How much a picture shows of a triangle, as a byte: 0: nothing.
+inline constexpr uint8_t kSeenOfAnySize = 1;
+/// The byte of something that is seen and covers so many pixels, and back.
+uint8_t size_byte(double pixels);
+double pixels_of_size(uint8_t byte);
+
 /// The sky that a surface sees, 0...1 of that of an open plane.
 struct SkyShares {
     /// The edges at which triangles are split, round by round: large ones, where the share varies.
@@ -42,7 +48,8 @@ struct SkyShares {
     std::vector<uint8_t> tints;
     double mean = 1;    // of the whole surface
     uint32_t rays = 0;  // that told the share of a corner, about
-    /// By triangle of the mesh that was split, 1: its corners have all their rays. Empty: all have.
+    /// By triangle of the mesh that was split: 0: its corners have few rays; kSeenOfAnySize: all;
+    /// else those of something so large in a picture. Empty: all have all.
     std::vector<uint8_t> seen;
     /// By triangle as `seen`, 1: the shares are those of its back. Empty: none are.
     std::vector<uint8_t> behind;
@@ -53,8 +60,9 @@ struct SkyShares {
     static std::optional<SkyShares> of_bytes(std::string_view bytes, size_t triangles);
 };
 
-/// Whether all triangles that are seen (a byte not 0; empty: all are) have all their rays, on the
-/// side that is seen (`behind`, a byte not 0: the back; empty: none are).
+/// Whether all triangles that are seen (bytes as of SkyShares::seen) have the rays of things as large
+/// or a quarter as large, on the side that is seen (`behind`, a byte not 0: the back; empty: none
+/// are).
 bool covers(const SkyShares& shares, std::span<const uint8_t> seen,
             std::span<const uint8_t> behind = {});
 /// Whether the shares are those of the mesh as it is, without splits.

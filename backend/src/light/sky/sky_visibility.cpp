@@ -38,6 +38,11 @@ constexpr double kLongEnough = 0.7;
 // Taste: more tell better where to split.
 constexpr int kFewestRays = 8;
 constexpr int kFewestPart = 8;  // Taste: as kFewestRays, the other way round
+// The rays of a corner whose triangle covers a pixel of a picture: the noise of larger ones is seen
+// over all of their pixels, and four times as large ones have twice as many.
+// Taste: a larger value has less noise, for as many rays more.
+constexpr double kRaysOfPixel = 32;
+constexpr double kFewestCornerRays = 8;  // Taste: as kRaysOfPixel, where triangles are small
 // The triangles that are not seen and have rays of their own, for the mean of all, about.
 // Taste: a larger value tells the mean better; nobody sees these.
 constexpr size_t kUnseenTriangles = 64;
@@ -97,12 +102,16 @@ private:
         const Mesh& mesh = split_.mesh();
         std::vector<uint8_t> corners(mesh.positions.size(), 0);
         for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-            for (int corner = 0; request_.seen[i] != 0 && corner < 3; ++corner)
-                corners[split_.welded()[mesh.triangles[i][corner]]] = 1;
+            for (int corner = 0; corner < 3; ++corner) {
+                uint8_t& size = corners[split_.welded()[mesh.triangles[i][corner]]];
+                size = std::max(size, request_.seen[i]);
+            }
         }
-        for (const Triangle& t : mesh.triangles) {
-            const auto near = [&](int corner) { return corners[split_.welded()[t[corner]]] != 0; };
-            thorough_.push_back(near(0) || near(1) || near(2) ? 1 : 0);
+        for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+            const Triangle& t = mesh.triangles[i];
+            const auto near = [&](int corner) { return corners[split_.welded()[t[corner]]]; };
+            thorough_.push_back(request_.seen[i] != 0 ? request_.seen[i]
+                                                      : std::max({near(0), near(1), near(2)}));
         }
         choose_unseen();
     }
@@ -195,12 +204,21 @@ private:
         }
     }
 
-    /// The rays of a corner of a triangle: as many more as this is larger than the mean, for noise
-    /// of large ones shows; about twice as many in all.
+    /// The rays of a corner of a triangle: by its size in the picture; or, where that is not known,
+    /// as many more as it is larger than the mean, about twice as many in all. Noise of large ones
+    /// shows.
     int rays_of_corner(size_t triangle) const {
         const std::vector<double>& areas = request_.surface.areas;
         const double mean = areas.empty() ? 0 : areas.back() / static_cast<double>(areas.size());
         const double own = glm::length(area_vector(split_.mesh(), triangle));
+        const uint32_t source = sources_[triangle];
+        if (!thorough_.empty() && thorough_[source] > kSeenOfAnySize) {
+            const double whole = areas[source] - (source > 0 ? areas[source - 1] : 0);
+            const double pixels =
+                pixels_of_size(thorough_[source]) * (whole > 0 ? limited(own / whole, 0, 1) : 1);
+            return static_cast<int>(limited(kRaysOfPixel * std::sqrt(pixels), kFewestCornerRays,
+                                            std::max(request_.rays, request_.most_rays)));
+        }
         if (request_.most_rays <= request_.rays || !(mean > 0))
             return request_.rays;
         return static_cast<int>(
@@ -213,9 +231,10 @@ private:
         uint32_t fewest = ~uint32_t{0};
         for (int corner = 0; corner < 3; ++corner)
             fewest = std::min(fewest, around_[split_.welded()[t[corner]]]);
-        const int wanted = rays_of_corner(triangle) / static_cast<int>(std::max(fewest, 1u));
+        const int of_corner = rays_of_corner(triangle);
+        const int wanted = of_corner / static_cast<int>(std::max(fewest, 1u));
         // Two are the fewest, for rays are cast in pairs.
-        const int least = std::clamp(request_.rays / kFewestPart, 2, kFewestRays);
+        const int least = std::clamp(of_corner / kFewestPart, 2, kFewestRays);
         return thorough(triangle) ? std::max(wanted, least) : kUnseenRays;
     }
 
@@ -337,7 +356,9 @@ private:
     geometry::EdgeSplitMesh split_;
     size_t most_;
     std::vector<uint32_t> sources_;  // by triangle: that of the surface which it is a part of
-    std::vector<uint8_t> thorough_;  // by triangle of the surface; empty: all are
+    /// By triangle of the surface, the size for which it has rays: a byte of SkyShares::seen. Empty:
+    /// all have all.
+    std::vector<uint8_t> thorough_;
     /// By triangle as `thorough_`, where it is not: the areas as large as its own that it stands
     /// for. 0: another one stands for it.
     std::vector<double> unseen_;
