@@ -152,7 +152,7 @@ private:
     /// Whether a picture shows anything of a thing.
     bool shown(size_t i) const {
         return !all_.skipped(all_.things()[i]) &&
-               (options_.needs == nullptr || options_.needs->seen(i));
+               (options_.needs == nullptr || options_.needs->shown(i));
     }
 
     /// Lists all that is to be known.
@@ -207,7 +207,7 @@ private:
     /// Adds what the picture shows of a thing.
     void note_seen(size_t i, WantedShares& wanted) const {
         const std::span<const uint8_t> needs =
-            options_.needs != nullptr ? options_.needs->triangles(i) : std::span<const uint8_t>{};
+            options_.needs != nullptr ? options_.needs->shown_triangles(i) : std::span<const uint8_t>{};
         if (needs.size() != wanted.seen.size())
             wanted.seen.clear();
         for (size_t k = 0; k < wanted.seen.size(); ++k) {

@@ -61,8 +61,11 @@ void PictureNeeds::find(const Model& model, const light::RendererSurfaces& rende
                         const choose::Cut& cut, const View& view, std::span<const Light> lights,
                         const Job& job) {
     bounds_cover_ = covered_by_bounds(model, cut, view);
-    if (view.modifiers.off_screen == OffScreen::Full || !(view.pixel_error > 0) ||
-        has_depth_blur(view.camera) || !ray::available())
+    full_detail_ = !(view.pixel_error > 0);
+    if (full_detail_)
+        lights = {};
+    if (view.modifiers.off_screen == OffScreen::Full || has_depth_blur(view.camera) ||
+        !ray::available())
         return;
     std::vector<light::DrawnThing> drawn;
     std::unordered_set<Hash> known;
@@ -91,10 +94,10 @@ void PictureNeeds::find(const Model& model, const light::RendererSurfaces& rende
             throw;
         return;  // a mask that cannot be decoded: what draws it says so
     }
-    if (parts_->known())
-        count_bytes(drawn);
-    else
+    if (!parts_->known())
         parts_.reset();
+    else if (!full_detail_)
+        count_bytes(drawn);
 }
 
 /// Sums the bytes of each distinct representation, as far as no copy needs its triangles.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards that a picture is the same without what it does not need, and what is never left out.
 #include "povray/mask_cards.h"
+#include "povray_export/lamp/renderer_surfaces.h"
+#include "povray_export/occurrence/picture_needs.h"
 #include "ray/mesh_scene.h"
 #include "scenes/fine_grids.h"
 
@@ -101,6 +103,29 @@ TEST_F(PictureNeedsScenes, NothingIsLeftOutWhereMoreThanRaysTell) {
     view.camera.focus_distance = 10;
     view.camera.aperture = 0.5;
     EXPECT_EQ(write("blurred").left_out, 0u);
+}
+
+// Full detail found the sky's light on a street behind the camera, and had no rays left for the rest.
+TEST_F(PictureNeedsScenes, FullDetailDrawsAllAndKnowsWhatItShows) {
+    fill();
+    view.pixel_error = 0;
+    const choose::Cut cut = choose::choose_cut(builder.finish(), view);
+    PictureNeeds needs;
+    EXPECT_TRUE(needs.shown(0));
+    needs.find(builder.model, renderer_surfaces(builder.model), cut, view, builder.model.lights,
+               {});
+    size_t shown = 0;
+    for (size_t i = 0; i < cut.chosen.size(); ++i) {
+        EXPECT_FALSE(needs.left_out(i));
+        EXPECT_TRUE(needs.seen(i));
+        EXPECT_TRUE(needs.triangles(i).empty());
+        EXPECT_EQ(needs.shown_triangles(i).empty(), false);
+        shown += needs.shown(i) ? 1 : 0;
+    }
+    EXPECT_EQ(cut.chosen.size(), 25u);
+    EXPECT_EQ(shown, 3u);  // ground, table and one ball
+    EXPECT_EQ(needs.bytes_left_out(), 0u);
+    EXPECT_EQ(needs.covered(), 1);
 }
 
 TEST_F(PictureNeedsScenes, SmallScenesAreNotLookedThrough) {

@@ -102,6 +102,27 @@ TEST(SeenSides, OnlyWhatIsSeenCountsAndOfClosedMeshesNothingElse) {
     EXPECT_TRUE(behind(box, from({0, 0, 5}), {}, none).empty());
 }
 
+TEST(SeenSides, TheSizeOfWhatIsSeenIsThatOfItsLargestPlacement) {
+    const Mesh sheet = shapes::quad(1, 1);  // two triangles
+    Camera camera = from({0, 0, 10});
+    const auto sizes = [&](std::initializer_list<double> scales) {
+        SeenSides sides;
+        std::vector<uint8_t> seen = {light::kSeenOfAnySize, 0};
+        for (const double scale : scales)
+            sides.add(sheet, {glm::dmat3(scale), {}}, camera, kPixels, {});
+        EXPECT_EQ(sides.add_sizes(seen), scales.size() > 0);
+        EXPECT_EQ(seen[1], 0);
+        return seen[0];
+    };
+    EXPECT_EQ(sizes({}), light::kSeenOfAnySize);
+    // The frame is as wide as what is as near as 1 m.
+    EXPECT_EQ(sizes({1}), light::size_byte(kPixels / 100 / 2));
+    EXPECT_EQ(sizes({1, 2, 0.5}), light::size_byte(4 * kPixels / 100 / 2));
+    camera.orthographic = true;
+    EXPECT_EQ(sizes({0.1}), light::size_byte(kPixels / 100 / 2));
+    EXPECT_EQ(sizes({1e6}), light::size_byte(kPixels));
+}
+
 TEST(SeenSides, OfCopiesTheLargestTell) {
     const Mesh sheet = shapes::quad(1, 1);
     const Affine near{glm::dmat3(1.0), {0, 0, 2}};

@@ -62,3 +62,30 @@ TEST_F(SeenShares, WhatIsNotSeenHasFewRaysAndIsNotSplit) {
     EXPECT_GT(10 * same, 9 * known.size());
     EXPECT_NEAR(first.mean, shares({}, nullptr).mean, 0.05);
 }
+
+// Facets of twenty pixels were as noisy as those of one.
+TEST_F(SeenShares, WhatIsLargeInThePictureHasLessNoise) {
+    const Mesh mesh = shapes::terrain(8);
+    const ObjectIndex ground = builder.mesh(mesh);
+    const ObjectIndex walls = builder.mesh(shapes::boxes(30));
+    const SkyPlace place(*this, {{ground, {}}, {walls, {glm::dmat3(0.04), {0.1, 0.4, 0}}}});
+    const auto shares = [&](std::span<const uint8_t> seen, int rays) {
+        SkyRequest request{
+            place.surfaces.of(finest(ground)), {}, &*place.scene, 0, rays, 0, 2 * rays};
+        request.seen = seen;
+        return sky_shares(request, {}).corners;
+    };
+    const std::vector<uint8_t> truth = shares({}, 4096);
+    const auto noise = [&](double pixels) {
+        const std::vector<uint8_t> seen(mesh.triangles.size(), size_byte(pixels));
+        const std::vector<uint8_t> found = shares(seen, 64);
+        double sum = 0;
+        for (size_t i = 0; i < found.size(); ++i)
+            sum += std::pow(share_of_byte(found[i]) - share_of_byte(truth[i]), 2);
+        return std::sqrt(sum / static_cast<double>(found.size()));
+    };
+    const double large = noise(1e4);
+    EXPECT_GT(noise(1e-3), 2 * large);
+    EXPECT_GT(noise(1), 1.2 * large);
+    EXPECT_LT(large, 0.06);
+}

@@ -80,6 +80,28 @@ TEST(SkyShares, BytesThatCannotBeAreRefused) {
     EXPECT_FALSE(SkyShares::of_bytes(more.bytes(), 2));
 }
 
+TEST(SkyShares, ASizeIsAByteOfOctaves) {
+    EXPECT_EQ(size_byte(0), kSeenOfAnySize + 1);  // something is seen of it
+    EXPECT_EQ(size_byte(-1), size_byte(0));
+    EXPECT_EQ(size_byte(kInfinity), 255);
+    for (const double pixels : {1e-6, 0.25, 1.0, 16.0, 65536.0})
+        EXPECT_NEAR(pixels_of_size(size_byte(pixels)) / pixels, 1, 0.5);
+    EXPECT_EQ(pixels_of_size(size_byte(16)), 16);
+    EXPECT_EQ(size_byte(std::nan("")), size_byte(0));
+}
+
+TEST(SkyShares, TheyCoverWhatIsAboutAsLarge) {
+    SkyShares shares;
+    shares.seen = {size_byte(16), 0};
+    EXPECT_TRUE(covers(shares, std::vector<uint8_t>{size_byte(1), 0}));
+    EXPECT_TRUE(covers(shares, std::vector<uint8_t>{size_byte(64), 0}));
+    EXPECT_FALSE(covers(shares, std::vector<uint8_t>{size_byte(128), 0}));
+    EXPECT_FALSE(covers(shares, std::vector<uint8_t>{kSeenOfAnySize, 0}));
+    EXPECT_FALSE(covers(shares, std::vector<uint8_t>{size_byte(1), size_byte(1)}));
+    shares.seen = {kSeenOfAnySize, 0};
+    EXPECT_TRUE(covers(shares, std::vector<uint8_t>{size_byte(1e9), 0}));
+}
+
 TEST(SkyShares, TheyCoverWhatHasAllItsRays) {
     SkyShares shares;
     const std::vector<uint8_t> first = {1, 0};
