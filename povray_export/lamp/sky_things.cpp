@@ -16,6 +16,9 @@ namespace {
 // Taste: a larger value shades small things more truly, for a copy of the mesh each.
 constexpr double kCopiedShare = 0.25;
 constexpr double kCopiedTriangles = 5000;  // Taste: as kCopiedShare
+// The same of the copies that are largest in a picture.
+// Taste: as kCopiedShare; fewer leave out the second ball in a small room.
+constexpr double kLargestTriangles = 20'000;
 // The pixels across from which on a copy may have shares of its own because of a picture.
 // Taste: a smaller value shades smaller copies more truly, for a mesh each.
 constexpr double kCopyShows = 24;
@@ -150,17 +153,13 @@ void SkyThings::choose_copied() {
             order.emplace_back(mesh.count * mesh.triangles, hash);
     }
     std::sort(order.begin(), order.end());
-    double rest = triangles_of_copies();
+    double rest = kCopiedTriangles + kCopiedShare * static_cast<double>(triangles_);
     for (const auto& [triangles, hash] : order) {
         rest -= static_cast<double>(triangles);
         if (rest < 0)
             break;
         placed_[hash].copied = true;
     }
-}
-
-double SkyThings::triangles_of_copies() const {
-    return kCopiedTriangles + kCopiedShare * static_cast<double>(triangles_);
 }
 
 bool SkyThings::in_place(const SkyThing& thing) const {
@@ -194,7 +193,7 @@ std::vector<uint8_t> SkyThings::largest_copies(const std::function<double(size_t
     }
     std::sort(order.begin(), order.end());
     std::vector<uint8_t> out(things_.size(), 0);
-    double rest = triangles_of_copies();
+    double rest = kLargestTriangles + kCopiedShare * static_cast<double>(triangles_);
     for (const auto& [across, i] : order) {
         // Of the finest level, so that the same copies have them at all Pixel Errors.
         const auto triangles = static_cast<double>(light::drawn_triangles(finest_of(things_[i])));

@@ -74,7 +74,6 @@ private:
     };
 
     std::string collect(uint64_t most_triangles);
-    double triangles_of_copies() const;
     /// Whether light goes through some of it.
     bool clear(const Representation& representation) const;
     bool moves(const Object& object) const { return !still_ && object.deforms; }
