@@ -17,6 +17,8 @@ public:
     /// is seen, and backs count as seen where the mesh is open.
     void add(const Mesh& mesh, const Affine& world, const Camera& camera, double pixels,
              std::span<const uint8_t> seen);
+    /// Whether anything was added that is not closed, or of which it is known what is seen.
+    bool known() const { return !sizes_.empty(); }
     /// Tells the sizes of what is seen: `seen`, by triangle, are bytes of light::SkyShares::seen, which
     /// become those of the most pixels that one placement covers. False: they are not known.
     bool add_sizes(std::span<uint8_t> seen) const;

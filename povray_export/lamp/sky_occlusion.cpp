@@ -21,7 +21,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 26;
+constexpr uint32_t kBakeVersion = 27;
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
@@ -181,11 +181,8 @@ private:
         if (!representation.resident())
             return false;
         if (representation.summary.kind == Kind::Mesh)
-            return fits(representation.mesh(), shares);
-        return fits(light::drawn_mesh(representation), shares);
-    }
-    static bool fits(const Mesh& mesh, const light::SkyShares& shares) {
-        return light::whole(mesh, shares) || light::split_for_sky(mesh, shares).has_value();
+            return light::fits(representation.mesh(), shares);
+        return light::fits(light::drawn_mesh(representation), shares);
     }
 
     WantedShares* want_shares(const SkyThing& thing, bool once) {
@@ -206,8 +203,9 @@ private:
 
     /// Adds what the picture shows of a thing.
     void note_seen(size_t i, WantedShares& wanted) const {
-        const std::span<const uint8_t> needs =
-            options_.needs != nullptr ? options_.needs->shown_triangles(i) : std::span<const uint8_t>{};
+        const std::span<const uint8_t> needs = options_.needs != nullptr
+                                                   ? options_.needs->shown_triangles(i)
+                                                   : std::span<const uint8_t>{};
         if (needs.size() != wanted.seen.size())
             wanted.seen.clear();
         for (size_t k = 0; k < wanted.seen.size(); ++k) {
@@ -258,8 +256,8 @@ private:
         Hasher hasher;
         hash_horizon(hasher.value(key), horizon);
         // Cameras that see other sides do not find what another one saw anew each time.
-        if (!wanted.behind.empty())
-            hasher.array(std::span<const uint8_t>(wanted.behind));
+        if (wanted.sides.known())
+            hasher.value(true).array(std::span<const uint8_t>(wanted.behind));
         wanted.key = hasher.result();
         if (const auto bytes = bakes_.find(wanted.key)) {
             auto found =
@@ -355,6 +353,7 @@ private:
         request.original = original;
         request.seen = wanted.seen;
         request.behind = wanted.behind;
+        request.one_side = wanted.sides.known();
         request.known = wanted.found.get();
         request.horizon = horizon_of(wanted);
         request.uneven = options_.uneven.get();
@@ -364,6 +363,8 @@ private:
             request.around = &*around_;
             request.splits = all_.splits_of(*wanted.placed);
             request.floor = grounds_.is_floor(*wanted.placed);
+            if (options_.camera != nullptr && !options_.camera->orthographic)
+                request.eye = options_.camera->position;
         }
         wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
     }

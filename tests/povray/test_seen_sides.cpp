@@ -5,6 +5,7 @@
 #include "povray/povray_scenes.h"
 #include "povray_export/lamp/seen_sides.h"
 #include "povray_export/lamp/sky_occlusion.h"
+#include "scenes/fine_grids.h"
 #include "scenes/with_rays.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -145,6 +146,35 @@ TEST_F(SkyInAPictureAlone, ARoofHasTheLightOfTheSideThatIsSeen) {
     EXPECT_NEAR(frame, 1, 0.01);
     EXPECT_NEAR(lights(&above)[0]->shares->mean, frame, 0.01);
     EXPECT_LT(lights(&below)[0]->shares->mean, 0.15);
+}
+
+// The walls of a mine were half as light as the hill above it.
+TEST_F(SkyInAPictureAlone, ACaveHasNoLightOfTheHillAboveIt) {
+    Mesh cave = shapes::box({-2, -2, -4}, {2, 2, 2});
+    for (Triangle& t : cave.triangles)
+        std::swap(t.y, t.z);  // its walls face inward
+    std::erase_if(cave.triangles, [&](const Triangle& t) {
+        return std::max({cave.positions[t.x].z, cave.positions[t.y].z, cave.positions[t.z].z}) < -3;
+    });  // of one sheet
+    builder.place(builder.mesh(cave));
+    builder.place(builder.mesh(shapes::box({-40, -40, -9}, {40, 40, 0})));
+    Camera inside = from({0, 0, 1});
+    EXPECT_GT(lights(nullptr)[0]->shares->mean, 0.1);
+    EXPECT_LT(lights(&inside)[0]->shares->mean, 0.02);
+}
+
+// Below a ground only the few places counted from where rays saw the sky through its hole.
+TEST_F(SkyInAPictureAlone, WhatIsSeenThroughAHoleInTheGroundIsDark) {
+    const ObjectIndex part = builder.mesh(shapes::quad(400, 400));
+    const ObjectIndex beside = builder.mesh(shapes::quad(2, 400));
+    builder.place(builder.mesh(shapes::quad(8, 8)), {glm::dmat3(1.0), {-4, -4, -2}});
+    builder.place(part, {glm::dmat3(1.0), {1, -200, 0}});
+    builder.place(part, {glm::dmat3(1.0), {-401, -200, 0}});
+    builder.place(beside, {glm::dmat3(1.0), {-1, 1, 0}});
+    builder.place(beside, {glm::dmat3(1.0), {-1, -401, 0}});
+    const Camera camera = from({0, 0, 0.5});  // sees all of the floor
+    const double of_hole = 0.75;              // of the light through it, so much is on the floor
+    EXPECT_NEAR(lights(&camera)[0]->shares->mean, of_hole * 2 * 2 / (8 * 8), 0.02);
 }
 
 TEST_F(SkyInAPictureAlone, CamerasThatTakeTurnsFindWhatEachOfThemSaw) {

@@ -85,10 +85,11 @@ private:
     glm::dvec3 from_{0.0};
 };
 
-// The times that as many rays are cast again, at most, until half as many leave the surface: of a dense
-// tree one in twelve does, and only these tell what is around it.
+// As many rays are cast again, so many times at most, until some leave the surface: of a dense tree
+// one in twelve does, and only these tell what is around it.
 // Taste: a larger value tells what is around denser things, for rays that tell nothing.
 constexpr int kMostRounds = 8;
+constexpr int kFewestLeft = 8;  // Taste: as kMostRounds; of few rays half as many are enough
 // How far the places of one round lie from those of the last, in parts of the way between two.
 // Law: the golden ratio, whose multiples lie nowhere close together.
 constexpr double kGoldenPart = 0.6180339887498949;
@@ -122,7 +123,7 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     uint32_t blocker = ray::PlacedScenes::kNothing;
     uint32_t near = ray::kNoTriangle;
     for (int i = 0; i < kMostRounds * rays; ++i) {
-        if (i % rays == 0 && 2 * left >= rays)
+        if (i % rays == 0 && left >= std::min(kFewestLeft, (rays + 1) / 2))
             break;
         const double part = std::fmod(0.5 + (i / rays) * kGoldenPart, 1.0);
         const size_t triangle = request.surface.triangle_at((i % rays + part) / rays);

@@ -233,7 +233,7 @@ TriangleShares SkySampler::shares_of_front(const Mesh& mesh, size_t triangle,
     }
     const bool dark = !both && out.open_share() < kDark;
     out.inside = dark && lies_inside(mesh, triangle, placed);
-    if (dark && !out.inside && !closed_ && !placed.turned)
+    if (dark && !out.inside && !closed_ && !placed.turned && !request_.one_side)
         add_back(mesh, triangle, placed, rays, out);
     return out;
 }
@@ -390,7 +390,19 @@ void SkySampler::add_back(const Mesh& mesh, size_t triangle, const PlacedTriangl
     }
 }
 
+bool SkySampler::seen_by_eye(const SkyPlace& place) const {
+    if (!request_.eye || request_.around == nullptr)
+        return false;
+    const glm::dvec3 from = ray(place, false).from_world;
+    const glm::dvec3 way = *request_.eye - from;
+    const double distance = glm::length(way);
+    return glm::dot(way, place.up) > 0 && std::isfinite(distance) &&
+           request_.around->first_block(from, way / distance, distance).t >= distance;
+}
+
 bool SkySampler::lies_below_backs(const SkyPlace& place) const {
+    if (seen_by_eye(place))
+        return false;
     const bool alone = request_.around == nullptr;
     if (alone && !request_.horizon.upright)
         return true;

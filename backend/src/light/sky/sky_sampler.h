@@ -44,6 +44,12 @@ struct SkyRequest {
     /// The sky by direction; of a surface alone, whose placements may be turned, by height where all
     /// of them are upright. Null: it is the same everywhere.
     const UnevenSky* uneven = nullptr;
+    /// Whether no other side than that which `behind` tells is seen. Else a front that is dark may be
+    /// the wall of a cave that is seen from outside.
+    bool one_side = false;
+    /// The place that the picture is seen from (world): no place that it sees lies inside of something.
+    /// None: nowhere, or the picture is orthographic.
+    std::optional<glm::dvec3> eye = {};
     /// Whether it is the floor of all: nobody sees what is below it, so it is split if it is a box,
     /// too.
     bool floor = false;
@@ -212,6 +218,8 @@ private:
 
     /// Whether backs are all around above a place, as below a ground, and not as below a roof.
     bool lies_below_backs(const SkyPlace& place) const;
+    /// Whether nothing is between a place and the eye.
+    bool seen_by_eye(const SkyPlace& place) const;
 
     /// Whether a ray ends at the back of something opaque within `reach` (world): the back of a
     /// roof is farther than that of what a thing stands in.

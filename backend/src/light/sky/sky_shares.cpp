@@ -199,4 +199,8 @@ std::optional<SkySplitMesh> split_for_sky(const Mesh& mesh, const SkyShares& sha
     return SkySplitMesh{split.take(), std::move(sources)};
 }
 
+bool fits(const Mesh& mesh, const SkyShares& shares) {
+    return whole(mesh, shares) || split_for_sky(mesh, shares).has_value();
+}
+
 }  // namespace lodestone::light

@@ -67,6 +67,8 @@ bool covers(const SkyShares& shares, std::span<const uint8_t> seen,
             std::span<const uint8_t> behind = {});
 /// Whether the shares are those of the mesh as it is, without splits.
 bool whole(const Mesh& mesh, const SkyShares& shares);
+/// Whether the shares are the light on a mesh: splits may be those of another one.
+bool fits(const Mesh& mesh, const SkyShares& shares);
 /// A mesh with its splits, and the triangle that each of its triangles is a part of.
 struct SkySplitMesh {
     Mesh mesh;
