@@ -2,6 +2,7 @@
 #include "povray_export/lamp/seen_sides.h"
 
 #include "base/maths.h"
+#include "geometry/closest_on_triangle.h"
 #include "light/seen/seen_parts.h"
 #include "light/sky/sky_shares.h"
 
@@ -15,7 +16,7 @@ namespace lodestone::povray {
 
 namespace {
 
-// What is seen covers so many pixels at least.
+// The pixels that something seen covers, at least.
 // Law: nothing that is seen is nothing.
 constexpr double kLeastPixels = 1e-6;
 
@@ -50,11 +51,12 @@ void SeenSides::add(const Mesh& mesh, const Affine& world, const Camera& camera,
         if (!seen.empty() && (seen[i] & light::kSeen) == 0)
             continue;
         const Triangle& t = mesh.triangles[i];
-        const glm::dvec3 middle =
-            (glm::dvec3(mesh.positions[t.x]) + glm::dvec3(mesh.positions[t.y]) +
-             glm::dvec3(mesh.positions[t.z])) /
-            3.0;
-        const glm::dvec3 way = camera.orthographic ? toward_eye : eye - middle;
+        // The closest place: a ground that reaches far is seen largest there.
+        const glm::dvec3 at = geometry::closest_on_triangle(eye, glm::dvec3(mesh.positions[t.x]),
+                                                            glm::dvec3(mesh.positions[t.y]),
+                                                            glm::dvec3(mesh.positions[t.z]))
+                                  .point;
+        const glm::dvec3 way = camera.orthographic ? toward_eye : eye - at;
         const double side = glm::dot(area_vector(mesh, i), way);
         const double away = camera.orthographic ? 1 : glm::length(world.linear * way);
         const double size =

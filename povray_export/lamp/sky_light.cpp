@@ -46,6 +46,7 @@ SkyLightPtr sky_light(Hash shares_hash, std::shared_ptr<const light::SkyShares> 
                     .value(out->slope.z)
                     .array(std::span<const uint8_t>(shares->seen))
                     .array(std::span<const uint8_t>(shares->behind))
+                    .array(std::span<const uint8_t>(shares->corners))
                     .result();
     out->shares = std::move(shares);
     return out;

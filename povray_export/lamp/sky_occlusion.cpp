@@ -21,7 +21,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays or splits are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kBakeVersion = 27;
+constexpr uint32_t kBakeVersion = 28;
 // The share of a mesh's triangles from which on all count as seen.
 // Taste: a larger value casts fewer rays now, and all of them for the next picture.
 constexpr double kMostSeen = 0.6;
@@ -161,8 +161,12 @@ private:
         means_of_.resize(all_.things().size(), {nullptr, 0});
         for (size_t i = 0; i < all_.things().size(); ++i) {
             const SkyThing& thing = all_.things()[i];
-            if (!shown(i))
+            if (!shown(i)) {
+                // Rays may have missed what full detail draws.
+                if (!all_.skipped(thing) && !thing.moves && options_.needs->seen(i))
+                    means_of_[i] = placements_.want(thing);
                 continue;
+            }
             const bool cornered = has_corners(thing);
             const bool once = cornered && ((!own_.empty() && own_[i] != 0) || all_.in_place(thing));
             if (cornered)
@@ -174,15 +178,6 @@ private:
             if (shares_of_[i] != nullptr)
                 shares_of_[i]->means = means_of_[i].first;
         }
-    }
-
-    /// Whether what was kept is the light on this mesh: splits may be those of another one.
-    static bool fits(const Representation& representation, const light::SkyShares& shares) {
-        if (!representation.resident())
-            return false;
-        if (representation.summary.kind == Kind::Mesh)
-            return light::fits(representation.mesh(), shares);
-        return light::fits(light::drawn_mesh(representation), shares);
     }
 
     WantedShares* want_shares(const SkyThing& thing, bool once) {
@@ -262,7 +257,7 @@ private:
         if (const auto bytes = bakes_.find(wanted.key)) {
             auto found =
                 light::SkyShares::of_bytes(*bytes, light::drawn_triangles(*wanted.representation));
-            if (found && fits(*wanted.representation, *found))
+            if (found && light::fits(*wanted.representation, *found))
                 wanted.found = std::make_shared<const light::SkyShares>(std::move(*found));
         }
         if (wanted.found) {
@@ -273,8 +268,12 @@ private:
                 kept_work_ += wanted.work;
                 return;
             }
-            wanted.seen.clear();
-            wanted.rays = wanted.whole_rays;
+            if (wanted.sized) {
+                light::see_all(wanted.seen, wanted.found->seen);
+            } else {
+                wanted.seen.clear();
+                wanted.rays = wanted.whole_rays;
+            }
         }
         missing_.push_back(&wanted);
     }
@@ -339,7 +338,7 @@ private:
                 continue;
             job_.check();
             const std::optional<light::SkySurface> joined = light::joined_surface(
-                surfaces_, occluders_below(*wanted->placed), wanted->placed->world);
+                surfaces_, all_.occluders_below(*wanted->placed), wanted->placed->world);
             bake_one(*wanted, joined ? &*joined : nullptr);
             progress.add(wanted->work);
         }
@@ -363,21 +362,10 @@ private:
             request.around = &*around_;
             request.splits = all_.splits_of(*wanted.placed);
             request.floor = grounds_.is_floor(*wanted.placed);
-            if (options_.camera != nullptr && !options_.camera->orthographic)
+            if (wanted.sides.known() && !options_.camera->orthographic)
                 request.eye = options_.camera->position;
         }
         wanted.found = std::make_shared<const light::SkyShares>(sky_shares(request, job_));
-    }
-
-    /// All that rests below a thing.
-    std::vector<light::SkyOccluder> occluders_below(const SkyThing& thing) const {
-        std::vector<light::SkyOccluder> out;
-        for (uint32_t i = thing.first; i < thing.end; ++i) {
-            const SkyLeaf& leaf = all_.leaves()[i];
-            if (leaf.hides)
-                out.push_back({&all_.finest_of(leaf), leaf.world});
-        }
-        return out;
     }
 
     /// Keeps what was found now.

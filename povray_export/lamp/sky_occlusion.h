@@ -22,8 +22,8 @@ inline constexpr std::string_view kSkyVersion = "LDSSKY03";
 
 /// The choices for sky occlusion.
 struct SkyOcclusionOptions {
-    int rays = 128;       // that tell the share of a corner, of a scene that is not large
-    double pixels = 1e9;  // of the picture: smaller triangles have fewer rays each
+    int rays = 128;       // that tell the share of a corner at most, of a scene that is not large
+    double pixels = 1e9;  // of the picture: smaller triangles, or larger meshes, have fewer rays
     bool still = false;   // what moves in an animation rests
     /// The camera of a picture alone: what is opaque has the light of the side that it sees, and the
     /// largest copies that of where they stand. Null: nothing changes as the camera moves.

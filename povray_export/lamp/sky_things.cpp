@@ -2,7 +2,6 @@
 #include "povray_export/lamp/sky_things.h"
 
 #include "light/clear_materials.h"
-#include "light/sky/sky_scene.h"
 #include "povray_export/lamp/placement_grades.h"
 #include "povray_export/scene/invertible_transform.h"
 
@@ -142,6 +141,16 @@ const Representation& SkyThings::finest_of(const SkyThing& thing) const {
     return thing.group ? *thing.representation : finest_of(leaves_[thing.first]);
 }
 
+std::vector<light::SkyOccluder> SkyThings::occluders_below(const SkyThing& thing) const {
+    std::vector<light::SkyOccluder> out;
+    for (uint32_t i = thing.first; i < thing.end; ++i) {
+        const SkyLeaf& leaf = leaves_[i];
+        if (leaf.hides)
+            out.push_back({&finest_of(leaf), leaf.world});
+    }
+    return out;
+}
+
 bool SkyThings::skipped(const SkyThing& thing) const {
     return thing.representation->summary.kind == Kind::Assembly || !thing.seen;
 }
@@ -195,7 +204,7 @@ std::vector<uint8_t> SkyThings::largest_copies(const std::function<double(size_t
     std::vector<uint8_t> out(things_.size(), 0);
     double rest = kLargestTriangles + kCopiedShare * static_cast<double>(triangles_);
     for (const auto& [across, i] : order) {
-        // Of the finest level, so that the same copies have them at all Pixel Errors.
+        // Finest levels count, so that about the same copies have them at all Pixel Errors.
         const auto triangles = static_cast<double>(light::drawn_triangles(finest_of(things_[i])));
         if (triangles > rest)
             continue;

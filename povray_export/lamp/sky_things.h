@@ -4,6 +4,7 @@
 
 #include "base/job.h"
 #include "choose/cut.h"
+#include "light/sky/sky_scene.h"
 
 #include <functional>
 #include <string>
@@ -53,6 +54,8 @@ public:
     const Representation& finest_of(const SkyLeaf& leaf) const;
     /// The finest level of what a thing is, or the stand-in that it is.
     const Representation& finest_of(const SkyThing& thing) const;
+    /// All that rests below a thing.
+    std::vector<light::SkyOccluder> occluders_below(const SkyThing& thing) const;
     /// Whether nothing is drawn for a thing itself.
     bool skipped(const SkyThing& thing) const;
     /// Whether a thing's shares, if its corners have some, are found where it stands.

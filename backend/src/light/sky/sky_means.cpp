@@ -85,8 +85,8 @@ private:
     glm::dvec3 from_{0.0};
 };
 
-// As many rays are cast again, so many times at most, until some leave the surface: of a dense tree
-// one in twelve does, and only these tell what is around it.
+// The rounds of rays, at most, until some leave the surface: of a dense tree one in twelve does, and
+// only these tell what is around it.
 // Taste: a larger value tells what is around denser things, for rays that tell nothing.
 constexpr int kMostRounds = 8;
 constexpr int kFewestLeft = 8;  // Taste: as kMostRounds; of few rays half as many are enough

@@ -23,7 +23,7 @@ struct SkyRequest {
     /// Metres, own frame: how far the surface may lie from its finest level, or from what it stands
     /// in for.
     double error = 0;
-    int rays = 128;     // about so many tell the share of a corner
+    int rays = 128;     // about so many tell the share of a corner whose size is not known
     size_t splits = 0;  // about how many triangles splits may add
     int most_rays = 0;  // as `rays`, where triangles are larger than the mean; fewer: none more
     /// The finest level of the surface, or all that it stands for, in its frame: rays begin at the
@@ -44,10 +44,11 @@ struct SkyRequest {
     /// The sky by direction; of a surface alone, whose placements may be turned, by height where all
     /// of them are upright. Null: it is the same everywhere.
     const UnevenSky* uneven = nullptr;
-    /// Whether no other side than that which `behind` tells is seen. Else a front that is dark may be
-    /// the wall of a cave that is seen from outside.
+    /// Whether `behind` tells which side is seen, but for mirrors and copies that show both. Else a
+    /// front that is dark may be the wall of a cave that is seen from outside.
     bool one_side = false;
     /// The place that the picture is seen from (world): no place that it sees lies inside of something.
+    /// Shares found for one eye are kept for others.
     /// None: nowhere, or the picture is orthographic.
     std::optional<glm::dvec3> eye = {};
     /// Whether it is the floor of all: nobody sees what is below it, so it is split if it is a box,
@@ -218,7 +219,7 @@ private:
 
     /// Whether backs are all around above a place, as below a ground, and not as below a roof.
     bool lies_below_backs(const SkyPlace& place) const;
-    /// Whether nothing is between a place and the eye.
+    /// Whether nothing is between a place and the eye; what is clear may count.
     bool seen_by_eye(const SkyPlace& place) const;
 
     /// Whether a ray ends at the back of something opaque within `reach` (world): the back of a

@@ -30,6 +30,14 @@ Mesh drawn_mesh(const Representation& representation) {
                : tessellated(representation);
 }
 
+bool fits(const Representation& representation, const SkyShares& shares) {
+    if (!representation.resident())
+        return false;
+    if (representation.summary.kind == Kind::Mesh)
+        return fits(representation.mesh(), shares);
+    return fits(drawn_mesh(representation), shares);
+}
+
 uint64_t drawn_triangles(const Representation& representation) {
     const RepresentationSummary& summary = representation.summary;
     if (summary.kind == Kind::Mesh)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/job.h"
+#include "light/sky/sky_shares.h"
 #include "model/model.h"
 #include "ray/placed_scenes.h"
 
@@ -18,6 +19,8 @@ namespace lodestone::light {
 Mesh drawn_mesh(const Representation& representation);
 /// Its triangles.
 uint64_t drawn_triangles(const Representation& representation);
+/// Whether shares are the light on what is drawn: splits may be those of another mesh.
+bool fits(const Representation& representation, const SkyShares& shares);
 
 /// A placed representation that hides the sky from others.
 struct SkyOccluder {

@@ -44,11 +44,15 @@ constexpr double kOnePixel = 128;
 // Taste: a larger value finds less anew as a camera comes nearer, with up to twice the noise.
 constexpr int kOctavesAlike = 2;
 
+// The octaves of a size from which on nothing has more rays, even where it is split.
+// Taste: a larger value finds more anew as a camera comes nearer.
+constexpr int kLargestOctaves = 12;
+
 /// Whether rays for one size are enough for another.
 bool enough(uint8_t found, uint8_t wanted) {
     if (found == kSeenOfAnySize || wanted == kSeenOfAnySize || found == 0)
         return found == kSeenOfAnySize;
-    return found + kOctavesAlike >= wanted;
+    return found + kOctavesAlike >= std::min<double>(wanted, kOnePixel + kLargestOctaves);
 }
 
 }  // namespace
@@ -173,6 +177,11 @@ bool covers(const SkyShares& shares, std::span<const uint8_t> seen,
             return false;
     }
     return true;
+}
+
+void see_all(std::span<uint8_t> seen, std::span<const uint8_t> before) {
+    for (size_t i = 0; i < seen.size(); ++i)
+        seen[i] = std::max({seen[i], i < before.size() ? before[i] : uint8_t{0}, size_byte(1)});
 }
 
 bool whole(const Mesh& mesh, const SkyShares& shares) {

@@ -31,7 +31,8 @@ inline constexpr double kTintSteps = 16;
 uint8_t tint_byte(double part, double luminance);
 double octaves_of_tint(uint8_t byte);
 
-/// How much a picture shows of a triangle, as a byte: 0: nothing.
+/// How much a picture shows of a triangle, as a byte: 0: nothing; else its size, if that is known.
+/// Law: the lowest byte but for nothing; sizes lie above it.
 inline constexpr uint8_t kSeenOfAnySize = 1;
 /// The byte of something that is seen and covers so many pixels, and back.
 uint8_t size_byte(double pixels);
@@ -47,7 +48,7 @@ struct SkyShares {
     /// color arrives than luminance. Empty: it is one hue.
     std::vector<uint8_t> tints;
     double mean = 1;    // of the whole surface
-    uint32_t rays = 0;  // that told the share of a corner, about
+    uint32_t rays = 0;  // that told the share of a corner of any size, about
     /// By triangle of the mesh that was split: 0: its corners have few rays; kSeenOfAnySize: all;
     /// else those of something so large in a picture. Empty: all have all.
     std::vector<uint8_t> seen;
@@ -65,6 +66,9 @@ struct SkyShares {
 /// are).
 bool covers(const SkyShares& shares, std::span<const uint8_t> seen,
             std::span<const uint8_t> behind = {});
+/// Counts all of a surface as seen, of which another picture saw `before` (empty: nothing is known):
+/// the larger sizes, and what neither of them shows as if it covered a pixel.
+void see_all(std::span<uint8_t> seen, std::span<const uint8_t> before);
 /// Whether the shares are those of the mesh as it is, without splits.
 bool whole(const Mesh& mesh, const SkyShares& shares);
 /// Whether the shares are the light on a mesh: splits may be those of another one.

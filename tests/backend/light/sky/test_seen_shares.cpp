@@ -89,3 +89,29 @@ TEST_F(SeenShares, WhatIsLargeInThePictureHasLessNoise) {
     EXPECT_GT(noise(1), 1.2 * large);
     EXPECT_LT(large, 0.06);
 }
+
+TEST_F(SeenShares, SomeTrianglesThatAreNotSeenTellTheMeanOfAll) {
+    // Half of a ground lies below a roof, in triangles of a hundredth of the area of the others.
+    Mesh mesh;
+    shapes::add_face(mesh, 60, {-10, -1, 0}, {1, 0, 0}, {0, 2, 0});
+    shapes::add_face(mesh, 6, {0, -1, 0}, {1, 0, 0}, {0, 2, 0});
+    const ObjectIndex ground = builder.mesh(mesh);
+    const ObjectIndex roof = builder.mesh(shapes::box({-11, -2, 0.1}, {-8, 2, 0.2}));
+    const SkyPlace place(*this, {{ground, {}}, {roof, {}}});
+    SkyRequest request{place.surfaces.of(finest(ground)), {}, &*place.scene, 0, 64, 0};
+    const double all = sky_shares(request, {}).mean;
+    std::vector<uint8_t> seen(mesh.triangles.size(), 0);
+    seen.back() = kSeenOfAnySize;
+    request.seen = seen;
+    EXPECT_NEAR(all, 0.53, 0.05);
+    EXPECT_NEAR(sky_shares(request, {}).mean, all, 0.05);
+}
+
+TEST(SeenSizes, AnotherPictureCountsAllAsSeen) {
+    std::vector<uint8_t> seen = {0, size_byte(4), size_byte(0.1)};
+    see_all(seen, std::vector<uint8_t>{size_byte(64), size_byte(1), 0});
+    EXPECT_EQ(seen, (std::vector<uint8_t>{size_byte(64), size_byte(4), size_byte(1)}));
+    see_all(seen, {});
+    EXPECT_EQ(seen[2], size_byte(1));
+    see_all({}, {});
+}
