@@ -125,7 +125,8 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     for (int i = 0; i < kMostRounds * rays; ++i) {
         if (i % rays == 0 && left >= std::min(kFewestLeft, (rays + 1) / 2))
             break;
-        const double part = std::fmod(0.5 + (i / rays) * kGoldenPart, 1.0);
+        const int round = i / rays;
+        const double part = std::fmod(0.5 + round * kGoldenPart, 1.0);
         const size_t triangle = request.surface.triangle_at((i % rays + part) / rays);
         if (triangle >= areas.size())
             continue;
