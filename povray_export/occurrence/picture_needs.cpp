@@ -59,13 +59,14 @@ bool pays(const View& view, uint64_t triangles, std::span<const Light> lights) {
 
 void PictureNeeds::find(const Model& model, const light::RendererSurfaces& renderer,
                         const choose::Cut& cut, const View& view, std::span<const Light> lights,
-                        const Job& job) {
+                        bool still, const Job& job) {
+    *this = PictureNeeds();
     bounds_cover_ = covered_by_bounds(model, cut, view);
     full_detail_ = !(view.pixel_error > 0);
     if (full_detail_)
         lights = {};
-    if (view.modifiers.off_screen == OffScreen::Full || has_depth_blur(view.camera) ||
-        !ray::available())
+    if ((full_detail_ && !still) || view.modifiers.off_screen == OffScreen::Full ||
+        has_depth_blur(view.camera) || !ray::available())
         return;
     std::vector<light::DrawnThing> drawn;
     std::unordered_set<Hash> known;

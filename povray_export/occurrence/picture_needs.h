@@ -19,9 +19,10 @@ namespace lodestone::povray {
 /// too, but only what it shows needs light of its own.
 class PictureNeeds {
 public:
-    /// Finds what is needed; `lights`: all that throw shadows. Throws Error(Cancelled).
+    /// Finds what is needed; `lights`: all that throw shadows; `still`: of a picture alone. Frames of
+    /// full detail share all light. Throws Error(Cancelled).
     void find(const Model& model, const light::RendererSurfaces& renderer, const choose::Cut& cut,
-              const View& view, std::span<const Light> lights, const Job& job);
+              const View& view, std::span<const Light> lights, bool still, const Job& job);
 
     /// Whether a choice (its position in cut.chosen) can be left out of the picture.
     bool left_out(size_t position) const {

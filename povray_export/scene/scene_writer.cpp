@@ -118,8 +118,8 @@ private:
     void find_needs() {
         if (!lit() || shading_.bounces > 0)
             return;
-        needs_ = PictureNeeds();
-        needs_.find(model_, renderer_, cut_, view_, all_lights(sky(), model_), job_);
+        needs_.find(model_, renderer_, cut_, view_, all_lights(sky(), model_), options_.still,
+                    job_);
         report_.left_out_bytes = needs_.bytes_left_out();
         report_.covered = needs_.covered();
     }
