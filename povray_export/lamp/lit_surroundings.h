@@ -18,8 +18,8 @@ struct SurroundedThing {
 /// The lit surfaces around each drawn thing, in steps; none around things that are too small to show
 /// them. Copies under one light of the sky have one, those of rough metal few. Only rough metal has
 /// any where light bounces, for all else has them from there, and in frames of an animation, where
-/// what moves would change all files around it: `still` says that it is a picture alone. Where rays cannot be cast, or there is too
-/// much to cast them at, there are none. Throws Error(Cancelled).
+/// what moves would change all files around it: `still` says that it is a picture alone. Where rays
+/// cannot be cast, or there is too much to cast them at, there are none. Throws Error(Cancelled).
 std::vector<light::LightAround> lit_surroundings(const Model& model,
                                                  const light::RendererSurfaces& renderer,
                                                  std::span<const light::DrawnThing> drawn,

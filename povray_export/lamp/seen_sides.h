@@ -13,8 +13,9 @@ namespace lodestone::povray {
 /// The sides that a picture sees of one surface, at all of its placements together.
 class SeenSides {
 public:
-    /// Adds a placement. `pixels`: those of the picture. `seen`: by triangle, bits of light::SeenParts; empty: it is not known what
-    /// is seen, and backs count as seen where the mesh is open.
+    /// Adds a placement. `pixels`: those of the picture. `seen`: by triangle, bits of
+    /// light::SeenParts; empty: it is not known what is seen, and backs count as seen where the mesh
+    /// is open.
     void add(const Mesh& mesh, const Affine& world, const Camera& camera, double pixels,
              std::span<const uint8_t> seen);
     /// Whether anything was added that is not closed, or of which it is known what is seen.

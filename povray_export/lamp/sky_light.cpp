@@ -40,13 +40,10 @@ SkyLightPtr sky_light(Hash shares_hash, std::shared_ptr<const light::SkyShares> 
     out->hash = Hasher()
                     .value(shares_hash)
                     .value(out->factor)
-                    .value(shares->rays)
                     .value(out->slope.x)
                     .value(out->slope.y)
                     .value(out->slope.z)
-                    .array(std::span<const uint8_t>(shares->seen))
-                    .array(std::span<const uint8_t>(shares->behind))
-                    .array(std::span<const uint8_t>(shares->corners))
+                    .text(shares->bytes())
                     .result();
     out->shares = std::move(shares);
     return out;

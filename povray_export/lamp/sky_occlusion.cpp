@@ -290,13 +290,11 @@ private:
             return *around_;
         if (options_.load_finest)
             options_.load_finest();
+        occluders_ = all_.occluders(0, all_.leaves().size());
         std::vector<const Representation*> all;
-        for (const SkyLeaf& leaf : all_.leaves()) {
-            if (!leaf.hides)
-                continue;
-            occluders_.push_back({&all_.finest_of(leaf), leaf.world});
-            all.push_back(&all_.finest_of(leaf));
-        }
+        all.reserve(occluders_.size());
+        for (const light::SkyOccluder& occluder : occluders_)
+            all.push_back(occluder.representation);
         surfaces_.add(all, job_);
         return around_.emplace(model_, surfaces_, occluders_, job_);
     }
@@ -338,7 +336,8 @@ private:
                 continue;
             job_.check();
             const std::optional<light::SkySurface> joined = light::joined_surface(
-                surfaces_, all_.occluders_below(*wanted->placed), wanted->placed->world);
+                surfaces_, all_.occluders(wanted->placed->first, wanted->placed->end),
+                wanted->placed->world);
             bake_one(*wanted, joined ? &*joined : nullptr);
             progress.add(wanted->work);
         }

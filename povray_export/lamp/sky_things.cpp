@@ -141,9 +141,9 @@ const Representation& SkyThings::finest_of(const SkyThing& thing) const {
     return thing.group ? *thing.representation : finest_of(leaves_[thing.first]);
 }
 
-std::vector<light::SkyOccluder> SkyThings::occluders_below(const SkyThing& thing) const {
+std::vector<light::SkyOccluder> SkyThings::occluders(size_t first, size_t end) const {
     std::vector<light::SkyOccluder> out;
-    for (uint32_t i = thing.first; i < thing.end; ++i) {
+    for (size_t i = first; i < end; ++i) {
         const SkyLeaf& leaf = leaves_[i];
         if (leaf.hides)
             out.push_back({&finest_of(leaf), leaf.world});

@@ -54,8 +54,8 @@ public:
     const Representation& finest_of(const SkyLeaf& leaf) const;
     /// The finest level of what a thing is, or the stand-in that it is.
     const Representation& finest_of(const SkyThing& thing) const;
-    /// All that rests below a thing.
-    std::vector<light::SkyOccluder> occluders_below(const SkyThing& thing) const;
+    /// The leaves of a range, as SkyThing has one, that hide the sky.
+    std::vector<light::SkyOccluder> occluders(size_t first, size_t end) const;
     /// Whether nothing is drawn for a thing itself.
     bool skipped(const SkyThing& thing) const;
     /// Whether a thing's shares, if its corners have some, are found where it stands.

@@ -135,7 +135,7 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
             continue;
         const bool both = !request.surface.opaque_slot(mesh.slot(triangle));
         // Rays are as dense as the surface is before it is placed, which may stretch some of it.
-        const double own = areas[triangle] - (triangle > 0 ? areas[triangle - 1] : 0);
+        const double own = request.surface.area_of(triangle);
         const double weight = own > 0 ? placed->area / own : 0;
         // Every second point of the sequence lies in one half of its first axis: both sides have
         // all points.

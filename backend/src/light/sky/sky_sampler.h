@@ -47,9 +47,9 @@ struct SkyRequest {
     /// Whether `behind` tells which side is seen, but for mirrors and copies that show both. Else a
     /// front that is dark may be the wall of a cave that is seen from outside.
     bool one_side = false;
-    /// The place that the picture is seen from (world): no place that it sees lies inside of something.
-    /// Shares found for one eye are kept for others.
-    /// None: nowhere, or the picture is orthographic.
+    /// The place that the picture is seen from (world): no place that it sees lies inside of
+    /// something. Shares found for one eye are kept for others. None: nowhere, or the picture is
+    /// orthographic.
     std::optional<glm::dvec3> eye = {};
     /// Whether it is the floor of all: nobody sees what is below it, so it is split if it is a box,
     /// too.

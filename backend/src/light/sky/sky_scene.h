@@ -37,6 +37,9 @@ struct SkySurface {
     std::vector<double> areas;         // of each triangle and all before it
 
     double area() const { return areas.empty() ? 0 : areas.back(); }
+    double area_of(size_t triangle) const {
+        return areas[triangle] - (triangle > 0 ? areas[triangle - 1] : 0);
+    }
     /// The triangle at a part of the area, 0...1; a number of none at its end.
     size_t triangle_at(double part) const {
         return static_cast<size_t>(std::lower_bound(areas.begin(), areas.end(), part * area()) -

@@ -43,7 +43,6 @@ constexpr double kOnePixel = 128;
 // The octaves of a size by which what was found for a smaller thing still does.
 // Taste: a larger value finds less anew as a camera comes nearer, with up to twice the noise.
 constexpr int kOctavesAlike = 2;
-
 // The octaves of a size from which on nothing has more rays, even where it is split.
 // Taste: a larger value finds more anew as a camera comes nearer.
 constexpr int kLargestOctaves = 12;

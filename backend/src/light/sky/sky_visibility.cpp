@@ -117,15 +117,14 @@ private:
     }
     /// Chooses triangles that are not seen evenly by their areas.
     void choose_unseen() {
-        const std::vector<double>& areas = request_.surface.areas;
         unseen_.assign(thorough_.size(), 0);
         double all = 0;
         for (size_t i = 0; i < thorough_.size(); ++i)
-            all += thorough_[i] == 0 ? areas[i] - (i > 0 ? areas[i - 1] : 0) : 0;
+            all += thorough_[i] == 0 ? request_.surface.area_of(i) : 0;
         double passed = 0;
         size_t chosen = 0;
         for (size_t i = 0; i < thorough_.size(); ++i) {
-            const double own = areas[i] - (i > 0 ? areas[i - 1] : 0);
+            const double own = request_.surface.area_of(i);
             if (thorough_[i] != 0 || !(own > 0))
                 continue;
             passed += own;
@@ -208,21 +207,20 @@ private:
     /// as many more as it is larger than the mean, about twice as many in all. Noise of large ones
     /// shows.
     int rays_of_corner(size_t triangle) const {
-        const std::vector<double>& areas = request_.surface.areas;
-        const double mean = areas.empty() ? 0 : areas.back() / static_cast<double>(areas.size());
+        const SkySurface& surface = request_.surface;
         const double own = glm::length(area_vector(split_.mesh(), triangle));
+        const double most = std::max(request_.rays, request_.most_rays);
         const uint32_t source = sources_[triangle];
         if (!thorough_.empty() && thorough_[source] > kSeenOfAnySize) {
-            const double whole = areas[source] - (source > 0 ? areas[source - 1] : 0);
-            const double pixels =
-                pixels_of_size(thorough_[source]) * (whole > 0 ? limited(own / whole, 0, 1) : 1);
-            return static_cast<int>(limited(kRaysOfPixel * std::sqrt(pixels), kFewestCornerRays,
-                                            std::max(request_.rays, request_.most_rays)));
+            const double whole = surface.area_of(source);
+            const double part = whole > 0 ? limited(own / whole, 0, 1) : 1;
+            const double pixels = part * pixels_of_size(thorough_[source]);
+            return static_cast<int>(
+                limited(kRaysOfPixel * std::sqrt(pixels), kFewestCornerRays, most));
         }
-        if (request_.most_rays <= request_.rays || !(mean > 0))
-            return request_.rays;
-        return static_cast<int>(
-            limited(request_.rays * own / mean, request_.rays, request_.most_rays));
+        const double mean = surface.area() / static_cast<double>(surface.areas.size());
+        return mean > 0 ? static_cast<int>(limited(request_.rays * own / mean, request_.rays, most))
+                        : request_.rays;
     }
 
     /// The rays of a triangle: about as many as its corner with the fewest triangles needs.
