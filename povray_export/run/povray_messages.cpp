@@ -81,6 +81,8 @@ void PovrayMessages::finish() {
 }
 
 void PovrayMessages::line(const std::string& text) {
+    if (!text.empty())
+        last_ = text;
     if (!message_.empty()) {
         const bool continues = !text.empty() && (wrapped_ == LineWrap::Word ||
                                                  (wrapped_ == LineWrap::Space && spaced(text)));
@@ -133,7 +135,9 @@ void PovrayMessages::keep(const std::string& message) {
 std::string PovrayMessages::reason() const {
     if (!error_.empty())
         return error_;
-    return suspect_.empty() ? "it gave no reason" : suspect_;
+    if (!suspect_.empty())
+        return suspect_;
+    return last_.empty() ? "it said nothing" : "it gave no reason; its last line: " + last_;
 }
 
 }  // namespace lodestone::povray

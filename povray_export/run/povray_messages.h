@@ -24,7 +24,8 @@ public:
 
     /// The warnings and errors, a line each, the last 8 KB.
     const std::string& text() const { return text_; }
-    /// The sentence that says why POV-Ray failed, with file and line where it knows them.
+    /// The sentence that says why POV-Ray failed, with file and line where it knows them; its last
+    /// line where no sentence does.
     std::string reason() const;
 
 private:
@@ -43,6 +44,7 @@ private:
     std::string text_;
     std::string error_;    // the first one that is certain
     std::string suspect_;  // the last other message
+    std::string last_;     // the last line that was not empty
     enum class TimedPhase { None, Parse, Trace } time_ = TimedPhase::None;
 };
 

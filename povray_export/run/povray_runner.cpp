@@ -366,7 +366,10 @@ RunReport render_scene(const RunOptions& options, const Job& job) {
     }
     report.exit_code = child.state_lost ? (messages.finished ? 0 : 1) : WEXITSTATUS(child.state);
     if (report.exit_code != 0)
-        fail(Status::PovrayFailed, "POV-Ray failed: ", messages.reason());
+        fail(Status::PovrayFailed, "POV-Ray failed (",
+             child.state_lost ? "another part of this program took its exit code"
+                              : text("exit code ", report.exit_code),
+             "): ", messages.reason());
     if (options.spread > 0 && std::filesystem::exists(temporary.picture, error))
         spread_picture(temporary.picture, options.output, options.spread,
                        options.folder / "scene.ini");

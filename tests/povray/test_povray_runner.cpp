@@ -182,6 +182,9 @@ TEST(PovrayRunner, AProgramThatDiesOrMakesNoPictureIsAFailure) {
     EXPECT_FALSE(says(with("kill -TERM $$\n"), "bush"));
     EXPECT_FALSE(says(with("kill -FPE $$\n"), "bush"));
     EXPECT_TRUE(says(with("echo 'Parse Error: of mine' >&2; exit 1\n"), "of mine"));
+    EXPECT_TRUE(says(with("echo 'Parse Error: of mine' >&2; exit 1\n"), "exit code 1"));
+    EXPECT_TRUE(says(with("exit 7\n"), "(exit code 7): it said nothing"));
+    EXPECT_TRUE(says(with("echo so; echo; exit 7\n"), "its last line: so"));
     EXPECT_EQ(with("yes | head -c 3000000; exit 1\n").status, Status::PovrayFailed);
     EXPECT_EQ(read_file(folder / "picture.exr"), "old");
     EXPECT_EQ(files_in(folder), 4u);  // scene.pov, scene.ini, program.sh, the old picture
