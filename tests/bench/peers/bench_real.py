@@ -10,9 +10,10 @@ supertuxkart-data, fetched into the cache, and LODESTONE_TOOLS/stk_scenes), file
 (scene cameras, so near alone) and three nights made here. Scenes, and the pictures of Cycles with
 256 samples, are kept in the cache (LODESTONE_BENCH_CACHE, default ~/.cache/lodestone-bench).
 
-Seconds are CPU of the whole process, without what opening the file takes. Levels are built before
-(the column says at which price); what earlier pictures found of the sky, masks and textures is not
-there, as in the first picture of a scene.
+Seconds are CPU of the whole process, without what opening the file takes; of what takes less than
+6 s, opening included, the least of three rounds in which all are run in turns. Levels are built
+before (the column says at which price); what earlier pictures found of the sky, masks and textures
+is not there, as in the first picture of a scene.
 
 Differences are the mean over covered pixels of the absolute difference of displayed values, 0...1,
 to Cycles with 256 samples and the same diffuse bounces, by which Cycles with 16 samples is judged,
@@ -22,6 +23,7 @@ is missing is skipped with a sentence; no number makes it fail.
 """
 
 import argparse
+import functools
 import json
 import math
 import os
@@ -32,6 +34,7 @@ import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy
 
@@ -57,6 +60,8 @@ DEFAULT = (
     "snowmountain/over", "night_tree/near",
 )  # fmt: skip
 SAMPLES, CONVERGED = 16, 256
+ROUNDS = 3
+SHORT_S = 6.0  # two runs of one process differ by some 0.3 s: a twentieth of this
 TIMEOUT = 3600
 # A user's: where Python may not keep what it compiled, every start compiles the add-on anew.
 PLAIN = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
@@ -85,6 +90,26 @@ def cpu_of(command: list, log: Path, environment: dict | None = None) -> float:
     if done.returncode not in (0, 3):  # 3: incomplete, and named in the report
         raise Missing(f"{Path(str(command[0])).name} failed: {log}")
     return children_cpu() - before
+
+
+class Timed(NamedTuple):
+    """The CPU seconds of a process, and what it made."""
+
+    cpu: float
+    picture: Path = Path()
+    report: dict = {}
+
+
+def least_of_rounds(measures: dict[str, Callable[[], Timed]]) -> dict[str, Timed]:
+    """The fastest of ROUNDS of each, in turns; what takes longer than SHORT_S is measured once."""
+    least: dict[str, Timed] = {}
+    for _ in range(ROUNDS):
+        for name, measure in measures.items():
+            before = least.get(name)
+            if before is None or before.cpu <= SHORT_S:
+                one = measure()
+                least[name] = one if before is None or one.cpu < before.cpu else before
+    return least
 
 
 class Scenes:
@@ -214,45 +239,59 @@ class View:
             words += ["--camera", self.camera]
         return self.batch(verb, name, *map(str, words))
 
+    def timed(self) -> dict[str, Timed]:
+        """What opening the file, Cycles' picture and ours by their Pixel Errors take."""
+        full = self.name not in self.options.without_full
+        errors = [error for error in self.options.pixel_errors if full or error > 0]
+
+        def ours(error: float) -> Timed:
+            picture, report, cpu = self.drawn(f"{error:g}px", error)
+            return Timed(cpu, picture, report)
+
+        return least_of_rounds(
+            {
+                "opening": lambda: Timed(self.opening()),
+                "cycles": lambda: Timed(self.cycles_cpu(SAMPLES, self.out / "cycles.png")),
+                **{f"{error:g}": functools.partial(ours, error) for error in errors},
+            }
+        )
+
     def measure(self) -> dict:
         """All numbers of the view."""
-        opening = self.opening()
         mask = self.cycles(4, transparent=True)
         converged = self.cycles(CONVERGED)
         noisy = self.cycles(SAMPLES)
-        took = self.cycles_cpu(SAMPLES, self.out / "cycles.png")
         covered = pixels(mask)[:, :, 3] >= 0.5
-        found = {
-            "opening_s": opening,
-            "cycles_s": took - opening,
-            "cycles": compared(noisy, converged, covered),
-            "ours": {},
-        }
-        build, cpu = self.batch("build", "build")
-        found["build_s"] = build.get("build", {}).get("cpu_s", 0.0)
+        build, _ = self.batch("build", "build")
         full = self.name not in self.options.without_full
         if full:
             reference, _, _ = self.drawn("reference", 0, "--antialias", "reference")
-        for error in self.options.pixel_errors:
-            if error == 0 and not full:
-                continue
-            picture, report, cpu = self.drawn(f"{error:g}px", error)
-            found["ours"][f"{error:g}"] = {
-                "cpu_s": cpu - opening,
-                "reading_s": report["extract"]["cpu_s"],
-                "export_s": report["export"]["cpu_s"],
-                "parse_s": report["povray"]["parse_cpu_s"],
-                "trace_s": report["povray"]["trace_cpu_s"],
-                "memory_bytes": max(0, report["povray"]["peak_bytes"] - self.options.empty),
-                "triangles": report["cut"]["triangles"],
-                "ssim": self.options.native.image_compare(
-                    str(reference), str(picture), str(mask)
-                ).ssim
-                if full
-                else None,
-                **compared(picture, converged, covered),
-            }
-        return found
+        timed = self.timed()
+        opening, took = timed.pop("opening").cpu, timed.pop("cycles").cpu
+        return {
+            "opening_s": opening,
+            "cycles_s": took - opening,
+            "cycles": compared(noisy, converged, covered),
+            "build_s": build.get("build", {}).get("cpu_s", 0.0),
+            "ours": {
+                error: {
+                    "cpu_s": cpu - opening,
+                    "reading_s": report["extract"]["cpu_s"],
+                    "export_s": report["export"]["cpu_s"],
+                    "parse_s": report["povray"]["parse_cpu_s"],
+                    "trace_s": report["povray"]["trace_cpu_s"],
+                    "memory_bytes": max(0, report["povray"]["peak_bytes"] - self.options.empty),
+                    "triangles": report["cut"]["triangles"],
+                    "ssim": self.options.native.image_compare(
+                        str(reference), str(picture), str(mask)
+                    ).ssim
+                    if full
+                    else None,
+                    **compared(picture, converged, covered),
+                }
+                for error, (cpu, picture, report) in timed.items()
+            },
+        }
 
 
 def pixels(path: Path) -> numpy.ndarray:
@@ -307,12 +346,14 @@ def table(found: dict[str, dict]) -> list[str]:
             view["ours"]["1"]["difference"] / max(view["cycles"]["difference"], 1e-3)
             for view in at_one
         ]
+        bright = [view["ours"]["1"]["brightness"] for view in at_one]
         lines += [
             "",
             f"At 1 px, {len(at_one)} views: CPU over that of Cycles with {SAMPLES} samples "
             f"{mean_ratio(times):.2f} in the geometric mean (goal: <= 1, aim 0.5), at most "
             f"{max(times):.2f} (goal: <= 2); difference over Cycles' own {mean_ratio(off):.2f} "
-            "(goal: <= 1.5).",
+            f"(goal: <= 1.5); brightness {mean_ratio(bright):.2f} in the geometric mean, "
+            f"{min(bright):.2f} to {max(bright):.2f} (goal: within 0.05).",
         ]
     return lines
 
