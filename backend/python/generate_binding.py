@@ -176,11 +176,11 @@ def records_text(header: Header) -> str:
     types, out = Types(header), ""
     for name in recorded(header):
         doc, fields = header.structs[name]
-        out += f"\n\n@dataclass\nclass {class_name(name)}:\n{docstring(doc)}"
+        out += f"\n\nclass {class_name(name)}(NamedTuple):\n{docstring(doc)}"
         for one in fields[1:]:
             out += commented(f"{one.name}: {types.recorded(one)}", one.doc)
-    uses = "from __future__ import annotations\n\nfrom dataclasses import dataclass\n"
-    uses += "from typing import TYPE_CHECKING\n\nif TYPE_CHECKING:\n    from . import structs\n"
+    uses = "from __future__ import annotations\n\nfrom typing import TYPE_CHECKING, NamedTuple\n"
+    uses += "\nif TYPE_CHECKING:\n    from . import structs\n"
     names = "|".join(map(class_name, header.structs))
     out = re.sub(rf"(: )({names})\b(?=  #|$)", r"\1structs.\2", out, flags=re.MULTILINE)
     return HEAD.format(header.name, "Values of structs that calls fill.", uses) + out

@@ -5,6 +5,8 @@ import contextlib
 import io
 import json
 import os
+import subprocess
+import sys
 import tempfile
 import unittest
 from dataclasses import fields
@@ -19,6 +21,24 @@ from lodestone.core.batch.file_jobs import FileJob, PictureRequest
 
 def parse(*arguments):
     return jobs(parser().parse_args(arguments))
+
+
+class Start(unittest.TestCase):
+    def test_reading_a_command_loads_no_more_of_the_library_than_its_constants(self):
+        """Of a picture that takes a second, loading the rest took a tenth."""
+        told = subprocess.run(
+            [
+                sys.executable,
+                "-c",
+                "import lodestone.core.batch.file_task, sys; print(*sys.modules)",
+            ],
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.split()
+        loaded = {name for name in told if "lodestone_native." in name}
+        self.assertLessEqual({name.rpartition(".")[2] for name in loaded}, {"enums"})
 
 
 class Usage(unittest.TestCase):

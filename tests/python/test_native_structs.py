@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Guards the binding against the header: sizes and offsets of every struct, every function."""
 
+import ast
 import ctypes
+import importlib
 import re
 import shutil
 import subprocess
@@ -12,6 +14,7 @@ from enum import EnumMeta
 from pathlib import Path
 
 import addon_path
+import lodestone_native
 from lodestone_native import LodestoneError, Model, base, enums, functions, kind_counts, library
 from lodestone_native import structs, view
 from lodestone_native.job import Job
@@ -184,6 +187,26 @@ class Functions(unittest.TestCase):
         self.assertEqual({k: word for k, word in named.items() if word}, ours)
         counted = kind_counts(range(enums.KIND_COUNT))
         self.assertEqual(counted, {w: k for k, w in ours.items() if w != "assembly"})
+
+
+class Names(unittest.TestCase):
+    def test_each_is_that_of_its_module_and_types_know_the_same(self):
+        tree = ast.parse(Path(lodestone_native.__file__).read_text("utf-8"))
+        typed = {
+            name.name: part.module
+            for part in ast.walk(tree)
+            if isinstance(part, ast.ImportFrom) and part.level == 1 and part.module
+            for name in part.names
+        }
+        self.assertEqual(lodestone_native._HOMES, typed)
+        for name, module in typed.items():
+            home = importlib.import_module(f"lodestone_native.{module}")
+            self.assertIs(getattr(lodestone_native, name), getattr(home, name), name)
+        self.assertTrue({"records", *typed} <= set(dir(lodestone_native)))
+
+    def test_a_wrong_name_is_an_attribute_error(self):
+        with self.assertRaisesRegex(AttributeError, "no attribute 'Modle'"):
+            lodestone_native.Modle
 
 
 class Loading(unittest.TestCase):

@@ -8,12 +8,12 @@ import tempfile
 import unittest
 from argparse import ArgumentParser
 from pathlib import Path
-from types import SimpleNamespace
 
 import addon_path
 from lodestone.core.batch.command_line import jobs, parser
 from lodestone.core.batch.file_jobs import PictureRequest
 from lodestone.core.batch import verbs
+from lodestone.core.batch.picture_making import MAKERS
 from lodestone.core.batch.verbs import VERBS, verb_of
 from lodestone.core.batch.verbs.verb import Verb
 from lodestone.core.exit_codes import ExitCode, Failed
@@ -71,11 +71,8 @@ class Verbs(unittest.TestCase):
         self.assertEqual(verb_of("export").lines({"scene": "a/scene.pov"}), ["a/scene.pov"])
         self.assertEqual(verb_of("build").lines({"store": "levels"}), [])
 
-    def test_all_tell_how_large_a_scene_is(self):
-        totals = SimpleNamespace(objects=1, occurrences=2, triangles_placed=24, triangles_unique=12)
-        model = SimpleNamespace(totals=lambda: totals)
-        for verb in VERBS:
-            self.assertEqual(verb.about(model, None)["model"]["triangles_placed"], 24)
+    def test_each_that_asks_for_pictures_has_one_who_makes_them(self):
+        self.assertEqual(set(MAKERS), {verb.name for verb in VERBS if verb.asks_for_pictures})
 
 
 class Pages(unittest.TestCase):

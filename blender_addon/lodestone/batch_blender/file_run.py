@@ -24,10 +24,11 @@ from lodestone.bridge.checks import blend_check, picture_requirements  # noqa: E
 from lodestone.bridge.motion import motion_sampling  # noqa: E402
 from lodestone.bridge.scene import deforming_poses  # noqa: E402
 from lodestone.bridge.scene_settings import SceneSettings  # noqa: E402
-from lodestone.core import progress_text, run_report  # noqa: E402
+from lodestone.core import progress_text, report_parts, run_report  # noqa: E402
 from lodestone.core.background_calls import Stopped, Work  # noqa: E402
 from lodestone.core.batch import blend_header, input_stamps, process_session  # noqa: E402
 from lodestone.core.batch.file_jobs import FileJob, PictureRequest  # noqa: E402
+from lodestone.core.batch.picture_making import MAKERS  # noqa: E402
 from lodestone.core.batch.verbs import verb_of  # noqa: E402
 from lodestone.core.exit_codes import ExitCode, Failed  # noqa: E402
 from lodestone.core.locked_folder import InUse  # noqa: E402
@@ -169,8 +170,7 @@ class FileRun:
             picture_requirements.grease_pencil(self.problems)
         with extraction.model as model:
             totals = model.totals()
-            for name, part in self.verb.about(model, self.job).items():
-                self.result.setdefault(name, part)
+            self.result.setdefault("model", report_parts.model_part(totals))
             spent = {"cpu_s": time.process_time() - cpu, "wall_s": time.monotonic() - wall}
             self.result.setdefault("extract", spent)
             if totals.occurrences == 0 and not picture_requirements.something(scene, self.problems):
@@ -190,7 +190,7 @@ class FileRun:
                         self.job, picture, scene, model, view, size, modifiers,
                         store, self._costs, self._folders, self.work, self._say,
                     )  # fmt: skip
-                    made.append({**work.about, **self.verb.make(work), **built})
+                    made.append({**work.about, **MAKERS[self.job.verb](work), **built})
                     self.problems.extend_native(model.problems())
                     self.problems.extend(work.problems)
                     self._tell_picture(picture.out, made[-1])
@@ -215,7 +215,7 @@ class FileRun:
         models = self._poses.models if self._poses is not None else ()
         options = native.BuildOptions(threads=self.job.threads, poses=models)
         done = self._long(lambda: model.build(str(store), options, self.work.new_job("Levels")))
-        part = run_report.build_part(done)
+        part = report_parts.build_part(done)
         self.result.setdefault("build", part)
         return part
 

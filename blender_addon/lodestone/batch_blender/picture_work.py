@@ -44,7 +44,7 @@ class SceneFolders:
 
 
 class BlenderPictureWork:
-    """As core/batch/verbs/verb.py's PictureWork."""
+    """As core/batch/picture_making.py's PictureWork."""
 
     def __init__(
         self, job: FileJob, request: PictureRequest, scene, model, camera, size, modifiers,

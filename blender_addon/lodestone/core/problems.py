@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Problems of the user's data: one per thing and cause, with its severity."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from . import stable_ids
-from .native import lodestone_native as native
 from .printable_text import valid
+
+if TYPE_CHECKING:
+    from .native import lodestone_native as native
 
 INFO, WARNING, ERROR = "info", "warning", "error"
 SEVERITIES = (INFO, WARNING, ERROR)

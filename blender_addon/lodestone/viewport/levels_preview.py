@@ -26,7 +26,7 @@ from ..core.preview.preview_worker import Failed, Made, Picture, Wanted
 from ..core.preview.viewport_state import View
 from ..core.problems import Problems
 from ..core.session.addon_session import addon_session
-from ..core.store import store_levels, store_path
+from ..core.store import store_path
 from . import forced_lod, preview_draw
 
 ENGINE = "LODESTONE_POVRAY"
@@ -111,7 +111,7 @@ class _Source:
 
 def _stamp(folder):
     try:
-        return (folder / store_levels.INDEX).stat().st_mtime_ns
+        return (folder / store_path.INDEX).stat().st_mtime_ns
     except OSError:
         return 0
 

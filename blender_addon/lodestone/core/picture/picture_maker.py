@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from .. import locked_folder, run_report, stable_ids
+from .. import locked_folder, report_parts, stable_ids
 from ..kind_words import DRAWN_KINDS
 from ..native import lodestone_native as native
 from ..problems import Problems
@@ -153,7 +153,7 @@ def _cut_and_export(
     folder.mkdir(parents=True, exist_ok=True)
     with settings.cut(model, camera, size, job) as cut:
         view, summary = cut.view, cut.summary()
-        parts = {"cut": run_report.cut_part(summary)}
+        parts = {"cut": report_parts.cut_part(summary)}
         met = unseen_detail.met(cut)
         if met is not None:
             parts["cut"]["rays"] = unseen_detail.part(met)
@@ -162,7 +162,7 @@ def _cut_and_export(
         in_use = levels_in_use(model, cut)
         shaded = replace(settings, pixel_error=cut.pixel_error)  # as roughly as it is drawn
         exported = native.povray_export(cut, str(folder), shaded.povray(), job)
-    parts["export"] = run_report.export_part(exported)
+    parts["export"] = report_parts.export_part(exported)
     quality = shaded.quality
     antialias = native.Antialias[quality.antialias]
     work = cost_model.Work.of(summary, view, exported, antialias, settings.threads, quality)
@@ -213,7 +213,7 @@ def make_picture(
             problems.extend([cause.problem])
             if cause.remedy is not None:
                 made.remedies[cause.problem.code] = cause.remedy
-    parts["povray"] = run_report.povray_part(ran)
+    parts["povray"] = report_parts.povray_part(ran)
     parts["predicted"] = predicted.part()
     parts["pixel_error"] = settings.pixel_error
     return made

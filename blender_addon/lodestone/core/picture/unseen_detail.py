@@ -3,6 +3,8 @@
 rays (what casts its shadows, what its mirrors show), which may meet coarser levels than the camera
 sees."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 

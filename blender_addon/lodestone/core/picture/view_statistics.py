@@ -6,7 +6,7 @@ import time
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
 
-from .. import run_report
+from .. import report_parts
 from ..native import lodestone_native as native
 from . import unseen_detail
 from .picture_maker import POVRAY_KINDS, Settings
@@ -95,7 +95,7 @@ class Chooser:
 
     def _statistics(self, cut: native.Cut, start: float, pixel_error: float) -> Statistics:
         summary = cut.summary()
-        part = run_report.cut_part(summary)
+        part = report_parts.cut_part(summary)
         met = unseen_detail.met(cut)
         return Statistics(
             triangles_before=self._before[0],

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..native import lodestone_native as native
-
-INDEX = "tileset.json"
+from .store_path import INDEX
 
 
 @dataclass(frozen=True)

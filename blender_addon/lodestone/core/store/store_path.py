@@ -9,6 +9,7 @@ from pathlib import Path
 from .. import file_names
 
 FOLDER = "lodestone"
+INDEX = "tileset.json"  # a folder with it is a store
 SCENE_ENDING = ".scene"  # of the folders that file_names knows to lie beside a store
 
 

@@ -5,7 +5,7 @@ import os
 from collections.abc import Sequence
 from typing import Any
 
-from ...store.store_levels import INDEX
+from ...store.store_path import INDEX
 from ..file_jobs import PictureRequest
 from .verb import Verb
 

@@ -5,11 +5,8 @@ import argparse
 from collections.abc import Sequence
 
 from ...exit_codes import ExitCode, Failed
-from ...picture.compare_pictures import Compared, compare
-from ...picture.picture_maker import SceneFolder
 from ..file_jobs import PictureRequest
 from .picture_verb import PovrayVerb
-from .verb import PictureWork
 from .verb_options import add_povray
 
 NO_LEVELS = (
@@ -28,11 +25,3 @@ class Compare(PovrayVerb):
     def check_requests(self, requests: Sequence[PictureRequest]) -> None:
         if not all(request.levels for request in requests):
             raise Failed(ExitCode.FAILED, NO_LEVELS)
-
-    def draw(self, work: PictureWork, folder: SceneFolder) -> Compared:
-        return compare(
-            work.model, work.camera, work.size, work.settings, folder.path, work.new_job, work.costs
-        )
-
-    def save(self, work: PictureWork, made: Compared) -> dict[str, str]:
-        return work.save_compared(made)

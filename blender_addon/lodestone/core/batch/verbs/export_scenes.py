@@ -3,12 +3,9 @@
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from ...file_names import folder_name
-from ...picture.picture_maker import cut_and_export
 from .picture_verb import PictureVerb
-from .verb import PictureWork
 from .verb_options import add_content
 
 
@@ -26,12 +23,3 @@ class Export(PictureVerb):
 
     def folder_of(self, out: Path) -> Path:
         return out
-
-    def make(self, work: PictureWork) -> dict[str, Any]:
-        folder = Path(work.request.out)
-        parts, _ = work.long(
-            lambda: cut_and_export(
-                work.model, work.camera, work.size, work.settings, folder, work.new_job("Export")
-            )
-        )
-        return {**parts, "scene": str(folder / "scene.pov")}

@@ -9,12 +9,9 @@ from typing import Any
 
 from ...exit_codes import ExitCode, Failed
 from ...file_names import LONGEST, fitting
-from ...native import lodestone_native as native
-from ...picture.compare_pictures import Compared
-from ...picture.picture_maker import Picture, SceneFolder
 from ..file_jobs import FileJob, PictureRequest
 from ..views_file import overrides_of, unseen_of
-from .verb import PictureWork, Verb
+from .verb import Verb
 from .verb_options import add_picture
 
 
@@ -103,27 +100,6 @@ class PovrayVerb(PictureVerb):
         super().check_output(out)
         if Path(out).is_dir():
             raise Failed(ExitCode.FAILED, f"{out} is a folder, not a picture")
-
-    def make(self, work: PictureWork) -> dict[str, Any]:
-        with work.scene_folder() as folder:
-            try:
-                made = work.long(lambda: self.draw(work, folder))
-            except native.LodestoneError as error:
-                if error.status == native.Status.POVRAY_FAILED:
-                    where = f" (its files: {folder.path})" if work.job.keep != "never" else ""
-                    raise Failed(ExitCode.POVRAY, f"{error}{where}") from error
-                raise
-            saved = self.save(work, made)
-        work.save_thumbnail()
-        return {**saved, **made.parts, "picture": work.request.out}
-
-    def draw(self, work: PictureWork, folder: SceneFolder) -> Picture | Compared:
-        """Runs POV-Ray, on a thread of its own."""
-        raise NotImplementedError
-
-    def save(self, work: PictureWork, made: Any) -> dict[str, str]:
-        """Writes what draw() made; returns what the report says of it beside the picture."""
-        raise NotImplementedError
 
 
 def result_of(made: dict[str, Any]) -> str:

@@ -6,11 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...file_names import folder_name
-from ...picture.picture_maker import Picture, SceneFolder, make_picture
 from ..file_jobs import FileJob, PictureRequest
 from ..views_file import read_views
 from .picture_verb import PovrayVerb
-from .verb import PictureWork
 from .verb_options import add_content, add_povray, add_render
 
 
@@ -34,15 +32,6 @@ class Render(PovrayVerb):
             raise ValueError("--views goes without --frames")
         pictures = read_views(options.views, options)
         return pictures if len(options.files) == 1 else _in_folders(pictures, options.out, file)
-
-    def draw(self, work: PictureWork, folder: SceneFolder) -> Picture:
-        return make_picture(
-            work.model, work.camera, work.size, work.settings, folder.path, work.new_job, work.costs
-        )
-
-    def save(self, work: PictureWork, made: Picture) -> dict[str, str]:
-        work.save(made)
-        return {}
 
 
 def _in_folders(
