@@ -206,8 +206,21 @@ TEST(PovrayRunner, TheChildGetsACleanEnvironmentAndNoFilesOfOurs) {
     const std::string environment = read_file(folder / "env.txt");
     EXPECT_NE(environment.find("LC_ALL=C\n"), std::string::npos);
     EXPECT_NE(environment.find("PATH="), std::string::npos);
+    EXPECT_NE(environment.find("GLIBC_TUNABLES=glibc.malloc."), std::string::npos);
     EXPECT_EQ(environment.find("LODESTONE_TEST_LEAK"), std::string::npos);
     EXPECT_EQ(read_file(folder / "fd.txt").find(text(leak, '\n')), std::string::npos);
+}
+
+TEST(PovrayRunner, HowMemoryIsAskedForIsTheUsersWhereTheySayIt) {
+    const auto folder = scene_with("tunables", kSphere);
+    const std::string program = script(folder, "env > env.txt; exit 1\n");
+    setenv("GLIBC_TUNABLES", "glibc.malloc.check=0", 1);
+    EXPECT_EQ(error_of([&] { render_scene({.folder = folder, .program = program}); }).status,
+              Status::PovrayFailed);
+    unsetenv("GLIBC_TUNABLES");
+    const std::string environment = read_file(folder / "env.txt");
+    EXPECT_NE(environment.find("GLIBC_TUNABLES=glibc.malloc.check=0\n"), std::string::npos);
+    EXPECT_EQ(environment.find("arena_max"), std::string::npos);
 }
 
 TEST(PovrayRunner, AStubbornProgramIsStoppedWithinASecond) {

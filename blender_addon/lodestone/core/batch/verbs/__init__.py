@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The verbs of batch.py, a class each: a new one is a file here and a row in VERBS."""
+"""The verbs of batch.py, a class each: a new one is a file here and a row in VERBS; where it makes
+pictures, also a row of MAKERS in ../picture_making.py."""
 
 from .build_levels import Build
 from .compare_levels import Compare
