@@ -11,7 +11,7 @@ supertuxkart-data, fetched into the cache, and LODESTONE_TOOLS/stk_scenes), file
 256 samples, are kept in the cache (LODESTONE_BENCH_CACHE, default ~/.cache/lodestone-bench).
 
 Seconds are CPU of the whole process, without what opening the file takes; of what takes less than
-6 s, opening included, the least of three rounds in which all are run in turns. Levels are built
+4 s, opening included, the least of five rounds in which all are run in turns. Levels are built
 before (the column says at which price); what earlier pictures found of the sky, masks and textures
 is not there, as in the first picture of a scene.
 
@@ -60,8 +60,8 @@ DEFAULT = (
     "snowmountain/over", "night_tree/near",
 )  # fmt: skip
 SAMPLES, CONVERGED = 16, 256
-ROUNDS = 3
-SHORT_S = 6.0  # two runs of one process differ by some 0.3 s: a twentieth of this
+ROUNDS = 5
+SHORT_S = 4.0  # two runs of one process differ by some 0.3 s: a tenth of this
 TIMEOUT = 3600
 # A user's: where Python may not keep what it compiled, every start compiles the add-on anew.
 PLAIN = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
