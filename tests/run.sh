@@ -111,12 +111,21 @@ blender_step() {
     fi
 }
 
-# ctest_step NAME PRESET CTEST_ARGUMENT...
-ctest_step() {
-    local name=$1 preset=$2
-    shift 2
-    step "$name" ctest --test-dir "build/$preset" --parallel "$(nproc)" --output-on-failure \
-        --no-tests=error --output-junit "$logs/$name.xml" "$@"
+# Suites of these names start POV-Ray, as the C tests with the label povray do.
+starts_povray='PovrayRun*:PovrayRender*'
+
+# backend_steps: the C++ tests of the backend, in a few processes, for starting one takes as long as
+# most tests; then the C tests, a process each.
+backend_steps() {
+    local but=() label=()
+    if [ "$fast" = 1 ]; then
+        but=("--gtest_filter=-$starts_povray")
+        label=(--label-exclude povray)
+    fi
+    step backend /usr/bin/python3 tests/run_shards.py --junit "$logs/backend.xml" \
+        build/release/tests/backend_tests "${but[@]}"
+    step capi ctest --test-dir build/release --parallel "$(nproc)" --output-on-failure \
+        --no-tests=error --output-junit "$logs/capi.xml" --label-regex capi "${label[@]}"
 }
 
 # behind: begins the long work that has no time limits, the sanitized build, its tests and
@@ -126,15 +135,15 @@ ctest_step() {
 behind() {
     setsid nice -n 19 bash -c '
         echo 19 2>/dev/null >/proc/self/autogroup || true
-        logs=$1 tidy_until=$2 SECONDS=$3
+        logs=$1 tidy_until=$2 SECONDS=$3 starts_povray=$4
         cmake --preset sanitize -DLODESTONE_TESTS=ON && ninja -C build/sanitize || exit 1
         began=$SECONDS
-        # Suites of these names start POV-Ray, in which nothing is sanitized. Of libraries that are
-        # opened late the sanitizer notes where their threads keep things, now and then at
-        # addresses that are none, and falls over them when it looks for leaks.
+        # In POV-Ray nothing is sanitized. Of libraries that are opened late the sanitizer notes
+        # where their threads keep things, now and then at addresses that are none, and falls over
+        # them when it looks for leaks.
         ASAN_OPTIONS=intercept_tls_get_addr=0 timeout --kill-after=10 1800 /usr/bin/python3 tests/run_shards.py \
             --junit "$logs/sanitize.xml" build/sanitize/tests/backend_tests \
-            --gtest_filter=-PovrayRun*:PovrayRender* >"$logs/sanitize.log" 2>&1
+            "--gtest_filter=-$starts_povray" >"$logs/sanitize.log" 2>&1
         timeout --kill-after=10 900 ctest --test-dir build/sanitize --output-on-failure \
             --no-tests=error --label-regex capi --label-exclude povray \
             --output-junit "$logs/sanitize-c.xml" >"$logs/sanitize-c.log" 2>&1
@@ -144,7 +153,7 @@ behind() {
             /usr/bin/python3 tests/run_python.py \
             --junit "$logs/tidy.xml" tests/lint/test_tidy.py >"$logs/tidy.log" 2>&1
         echo $((SECONDS - began)) >"$logs/tidy.seconds"
-    ' behind "$logs" "$tidy_until" $((SECONDS - start)) >"$logs/sanitize-build.log" 2>&1 &
+    ' behind "$logs" "$tidy_until" $((SECONDS - start)) "$starts_povray" >"$logs/sanitize-build.log" 2>&1 &
     behind=$!
     trap 'kill -- "-$behind" 2>/dev/null || true' EXIT
 }
@@ -175,16 +184,14 @@ for file in tests/lint/test_*.py; do
     [[ $file == */test_tidy.py ]] || lint+=("$file")
 done
 if [ "$fast" = 1 ]; then
-    ctest_step backend release --label-exclude povray
+    backend_steps
     python_step lint "${lint[@]}"
     python_step python tests/python/test_*.py
-    python_step capi tests/capi/test_*.py
 else
-    ctest_step backend release
+    backend_steps
 
     python_step lint "${lint[@]}"
     python_step python tests/python/test_*.py
-    python_step capi tests/capi/test_*.py
     behind
     python_step blender tests/blender/test_*.py
     blender_step in-blender tests/blender/blender_test_*.py
