@@ -189,6 +189,14 @@ class Functions(unittest.TestCase):
         self.assertEqual(counted, {w: k for k, w in ours.items() if w != "assembly"})
 
 
+class Cameras(unittest.TestCase):
+    def test_those_of_a_model_are_read_back(self):
+        given = view.Camera("Über", True, (1, 2, 3), (0, 1, 0), (1, 0, 0), (0, 0, 1), 0.25, 4.0)
+        with Model() as model:
+            model.add_camera(given)
+            self.assertEqual(model.cameras(), [given])
+
+
 class Names(unittest.TestCase):
     def test_each_is_that_of_its_module_and_types_know_the_same(self):
         tree = ast.parse(Path(lodestone_native.__file__).read_text("utf-8"))

@@ -400,7 +400,7 @@ class Model(Handle):
         for position in range(library().lds_model_camera_count(self.handle)):
             out = structs.Camera()
             check(library().lds_model_camera(self.handle, position, out))
-            values = vars(out.record())
+            values = out.record()._asdict()
             values["orthographic"] = bool(values["orthographic"])
             found.append(Camera(**values))
         return found
