@@ -28,7 +28,7 @@ protected:
         scenes::Builder builder;
         builder.model.lights.push_back(scenes::sun(kPi));
         const ObjectIndex floor = builder.mesh(shapes::quad(200, 200));
-        const ObjectIndex ball = builder.mesh(shapes::sphere(1, 8), {builder.material(material)});
+        const ObjectIndex ball = builder.mesh(shapes::sphere(1, 4), {builder.material(material)});
         const Model& model = builder.finish();
         std::vector<light::DrawnThing> drawn = {
             {&model.objects[floor].representations[0], {glm::dmat3(1.0), {-100, -100, 0}}}};
@@ -93,7 +93,7 @@ TEST_F(SurroundingsShown, CopiesUnderOneSkyHaveOneLight) {
     scenes::Builder builder;
     builder.model.lights.push_back(scenes::sun(kPi));
     const ObjectIndex floor = builder.mesh(shapes::quad(200, 200));
-    const ObjectIndex ball = builder.mesh(shapes::sphere(1, 8), {builder.material(metal(0, 0.5))});
+    const ObjectIndex ball = builder.mesh(shapes::sphere(1, 4), {builder.material(metal(0, 0.5))});
     const Model& model = builder.finish();
     const Representation* const shown = &model.objects[ball].representations[0];
     const std::vector<light::DrawnThing> drawn = {
@@ -123,7 +123,7 @@ TEST_F(SurroundingsShown, WhereThereIsTooMuchItShowsNothing) {
     scenes::Builder builder;
     builder.model.lights.push_back(scenes::sun(kPi));
     const ObjectIndex floor = builder.mesh(shapes::quad(200, 200));
-    const ObjectIndex ball = builder.mesh(shapes::sphere(1, 8), {builder.material(metal(1, 0.5))});
+    const ObjectIndex ball = builder.mesh(shapes::sphere(1, 4), {builder.material(metal(1, 0.5))});
     builder.model.objects[floor].representations[0].summary.cost.triangles = 10'000'000;
     const Model& model = builder.finish();
     const std::vector<light::DrawnThing> drawn = {

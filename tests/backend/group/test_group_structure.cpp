@@ -230,10 +230,10 @@ TEST(Insertion, ThousandsOfThingsInOnePlaceAndOnesInsideTheOther) {
     std::vector<group::GroupingItem> points(2000, point_item({5, 5, 5}, 0));
     expect_whole(group::group_by_insertion(points, {}, {}), points.size(), 64);
     std::vector<group::GroupingItem> nested;
-    nested.reserve(3000);
-    for (int i = 0; i < 3000; ++i)
-        nested.push_back(point_item({0, 0, 0}, std::pow(0.98, i)));
-    expect_whole(group::group_by_insertion(nested, {}, {}), nested.size(), 3000);
+    nested.reserve(1000);
+    for (int i = 0; i < 1000; ++i)
+        nested.push_back(point_item({0, 0, 0}, std::pow(0.94, i)));
+    expect_whole(group::group_by_insertion(nested, {}, {}), nested.size(), 1000);
     std::vector<group::GroupingItem> huge;
     huge.reserve(300);
     for (int i = 0; i < 300; ++i)

@@ -20,7 +20,7 @@ protected:
         white.base_color = glm::dvec3(0.8);
         white.specular = 0;
         floor = builder.mesh(shapes::quad(200, 200), {builder.material(white)});
-        ball = builder.mesh(shapes::sphere(1, 8));
+        ball = builder.mesh(shapes::sphere(1, 4));
     }
 
     light::LightAround around_ball(double height, double floor_at = 0) {
