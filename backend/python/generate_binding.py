@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes the Python package lodestone_native in the build folder: what is written by hand, and from
 the C header enums.py (its numbers), structs.py, records.py (the values of structs that calls fill)
-and functions.py, with types for mypy in .pyi files and the header's comments.
+and functions.py, with types for mypy in .pyi files (of the package's own names, too) and the
+header's comments.
 
     generate_binding.py --header lodestone.h --package lodestone_native --out build/NAME/python/...
 """
@@ -10,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import re
+import runpy
 import sys
 import textwrap
 from pathlib import Path
@@ -217,6 +219,16 @@ def package(header: Header) -> dict[str, str]:
     return made
 
 
+def names_stub(names: dict[str, str]) -> str:
+    """The types of a package whose names are loaded when they are used. `names`: those of each
+    module; "": the module itself is one."""
+    out = ""
+    for module, text in names.items():
+        out += "".join(f"from .{module} import {one} as {one}\n" for one in text.split())
+        out += "" if text else f"from . import {module} as {module}\n"
+    return HEAD.format("__init__.py", "The names of the package.", out)
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description="Makes the Python package of a C header.")
     parser.add_argument("--header", type=Path, required=True)
@@ -231,6 +243,8 @@ def main() -> int:
     for source in sorted(options.package.iterdir()):
         if source.name == "py.typed" or source.suffix == ".py":
             made[source.name] = source.read_text(encoding="utf-8")
+    names = runpy.run_path(str(options.package / "__init__.py")).get("NAMES", {})
+    made["__init__.pyi"] = names_stub(names)
     options.out.mkdir(parents=True, exist_ok=True)
     for old in options.out.iterdir():
         if old.is_file() and old.name not in made:

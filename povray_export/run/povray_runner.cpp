@@ -23,6 +23,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace lodestone::povray {
@@ -37,10 +38,10 @@ constexpr int kTickMs = 20;
 /// Taste: a larger value waits longer for POV-Ray to save and clean up.
 constexpr double kGraceS = 0.5;
 /// How POV-Ray asks the system for memory: in steps of 16 MB and pages of 2 MB, for all threads
-/// together. Parsing asks a thousand times a millisecond, tracing once in some pixels.
+/// together. Parsing asks for pieces hundreds of times a millisecond, tracing once in some pixels.
 /// Taste: smaller steps and pages keep less for what is never asked, and are slower to get.
-constexpr const char* kMemory =
-    "GLIBC_TUNABLES=glibc.malloc.hugetlb=1:glibc.malloc.arena_max=1:glibc.malloc.top_pad=16777216";
+constexpr const char* kMallocTunables =
+    "glibc.malloc.hugetlb=1:glibc.malloc.arena_max=1:glibc.malloc.top_pad=16777216";
 /// The share of the progress bar for parsing.
 /// Taste: a larger value makes the bar jump in scenes that are parsed at once.
 constexpr double kParsePart = 0.15;
@@ -80,13 +81,14 @@ public:
         fcntl(output_, F_SETFL, O_NONBLOCK);
 
         std::vector<std::string> environment = {"LC_ALL=C"};
-        for (const char* name : {"PATH", "HOME", "GLIBC_TUNABLES"}) {
-            const char* value = std::getenv(name);
+        const std::pair<const char*, const char*> names_and_defaults[] = {
+            {"PATH", nullptr}, {"HOME", nullptr}, {"GLIBC_TUNABLES", kMallocTunables}};
+        for (const auto& [name, otherwise] : names_and_defaults) {
+            const char* own = std::getenv(name);
+            const char* value = own != nullptr ? own : otherwise;
             if (value != nullptr)
                 environment.push_back(text(name, '=', value));
         }
-        if (std::getenv("GLIBC_TUNABLES") == nullptr)
-            environment.emplace_back(kMemory);
         try {
             process_ = spawn({program, arguments, environment, folder, ends[1]});
         } catch (...) {

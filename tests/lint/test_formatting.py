@@ -6,7 +6,6 @@ import unittest
 from repository import CPP_ENDINGS, files_ending, run, text_of
 
 FLAKE8 = ("flake8", "--isolated", "--max-line-length=100", "--extend-ignore=E203,W503,F722,F821")
-FLAKE8 += ("--per-file-ignores=__init__.py:F401",)  # what a package hands on
 # Blender's properties are annotations that no type has the name of; elsewhere a name without a
 # meaning is an error that shows when it is used.
 NAMES = ("flake8", "--isolated", "--select=F821")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The parts of a report that tell what the library did, from its records."""
+"""The parts of a report that tell what the library did, from its records; in SI units."""
 
 from typing import Any
 
@@ -16,53 +16,27 @@ def model_part(totals: native.records.Totals) -> dict[str, int]:
 
 
 def build_part(report: native.records.BuildReport) -> dict[str, Any]:
-    return {
-        "objects": report.objects,
-        "built": report.built,
-        "representations": report.representations,
-        "bytes_written": report.bytes_written,
-        "wall_s": report.wall_s,
-        "cpu_s": report.cpu_s,
-    }
+    return _picked(report, "objects built representations bytes_written wall_s cpu_s")
 
 
 def cut_part(summary: native.records.CutSummary) -> dict[str, Any]:
-    return {
-        "kinds": native.kind_counts(summary.occurrences_of_kind),
-        "occurrences": summary.occurrences,
-        "originals": summary.originals,
-        "triangles": summary.triangles,
-        "bytes": summary.bytes,
-        "largest_error_px": summary.largest_error_px,
-        "largest_error_name": summary.largest_error_name,
-    }
+    kinds = native.kind_counts(summary.occurrences_of_kind)
+    fields = "occurrences originals triangles bytes largest_error_px largest_error_name"
+    return {"kinds": kinds, **_picked(summary, fields)}
 
 
 def export_part(report: native.records.ExportReport) -> dict[str, Any]:
-    return {
-        "bytes": report.bytes,
-        "files": report.files,
-        "written": report.written,
-        "cpu_s": report.cpu_s,
-        "left_out": report.left_out,
-        "left_out_bytes": report.left_out_bytes,
-        "sky_copies": report.sky_copies,
-        "shadow_rays": report.shadow_rays,
-        "lamp_rays": report.lamp_rays,
-        "sky_lights": report.sky_lights,
-        "soft_lamps": report.soft_lamps,
-        "text_bytes": report.text_bytes,
-        "texels": report.texels,
-        "covered": report.covered,
-        "cut_triangles": report.cut_triangles,
-    }
+    return _picked(
+        report,
+        "bytes files written cpu_s left_out left_out_bytes sky_copies shadow_rays lamp_rays "
+        "sky_lights soft_lamps text_bytes texels covered cut_triangles",
+    )
 
 
 def povray_part(report: native.records.PovrayReport) -> dict[str, Any]:
-    return {
-        "parse_cpu_s": report.parse_cpu_s,
-        "trace_cpu_s": report.trace_cpu_s,
-        "wall_s": report.wall_s,
-        "peak_bytes": report.peak_bytes,
-        "exit_code": report.exit_code,
-    }
+    return _picked(report, "parse_cpu_s trace_cpu_s wall_s peak_bytes exit_code")
+
+
+def _picked(record: Any, fields: str) -> dict[str, Any]:
+    """Those fields of a record, in this order."""
+    return {field: getattr(record, field) for field in fields.split()}

@@ -225,10 +225,11 @@ class View:
         cpu = cpu_of(command, self.out / f"{name}.log")
         return json.loads(report.read_text("utf-8")), cpu
 
-    def drawn(self, name: str, pixel_error: float, *more: str) -> tuple[Path, dict, float]:
-        """A picture, as the first one of its scene, with its report and CPU."""
+    def drawn(self, name: str, pixel_error: float, *more: str) -> Timed:
+        """A picture, as the first one of its scene."""
         picture = self.out / f"{name}.png"
-        return (picture, *self.seen("render", name, picture, pixel_error, *more))
+        report, cpu = self.seen("render", name, picture, pixel_error, *more)
+        return Timed(cpu, picture, report)
 
     def seen(self, verb: str, name: str, out: Path, pixel_error: float, *more: str) -> tuple:
         """What batch() returns of a verb that looks through the camera, without earlier finds."""
@@ -243,16 +244,14 @@ class View:
         """What opening the file, Cycles' picture and ours by their Pixel Errors take."""
         full = self.name not in self.options.without_full
         errors = [error for error in self.options.pixel_errors if full or error > 0]
-
-        def ours(error: float) -> Timed:
-            picture, report, cpu = self.drawn(f"{error:g}px", error)
-            return Timed(cpu, picture, report)
-
         return least_of_rounds(
             {
                 "opening": lambda: Timed(self.opening()),
                 "cycles": lambda: Timed(self.cycles_cpu(SAMPLES, self.out / "cycles.png")),
-                **{f"{error:g}": functools.partial(ours, error) for error in errors},
+                **{
+                    f"{error:g}": functools.partial(self.drawn, f"{error:g}px", error)
+                    for error in errors
+                },
             }
         )
 
@@ -265,7 +264,7 @@ class View:
         build, _ = self.batch("build", "build")
         full = self.name not in self.options.without_full
         if full:
-            reference, _, _ = self.drawn("reference", 0, "--antialias", "reference")
+            reference = self.drawn("reference", 0, "--antialias", "reference").picture
         timed = self.timed()
         opening, took = timed.pop("opening").cpu, timed.pop("cycles").cpu
         return {

@@ -61,7 +61,7 @@ class RivalView(bench_real.View):
         opening = self.opening()
         mask = self.cycles(4, transparent=True)
         self.batch("build", "build")
-        reference, _, _ = self.drawn("reference", 0, "--antialias", "reference")
+        reference = self.drawn("reference", 0, "--antialias", "reference").picture
 
         def ssim(picture: Path) -> float:
             compare = self.options.native.image_compare
@@ -69,7 +69,7 @@ class RivalView(bench_real.View):
 
         found: dict = {"ours": {}, "rival": []}
         for error in self.options.pixel_errors:
-            picture, _, cpu = self.drawn(f"{error:g}px", error)
+            cpu, picture, _ = self.drawn(f"{error:g}px", error)
             found["ours"][f"{error:g}"] = {"cpu_s": cpu - opening, "ssim": ssim(picture)}
         drawn = {}
         for area in AREA_SAMPLES:

@@ -68,11 +68,7 @@ def _export(work: PictureWork) -> dict[str, Any]:
 
 
 def _render(work: PictureWork) -> dict[str, Any]:
-    def save(made: Picture) -> dict[str, str]:
-        work.save(made)
-        return {}
-
-    return _drawn(work, make_picture, save)
+    return _drawn(work, make_picture, work.save)
 
 
 def _compare(work: PictureWork) -> dict[str, Any]:
@@ -80,10 +76,10 @@ def _compare(work: PictureWork) -> dict[str, Any]:
 
 
 def _drawn(
-    work: PictureWork, draw: Callable[..., Made], save: Callable[[Made], dict[str, str]]
+    work: PictureWork, draw: Callable[..., Made], save: Callable[[Made], dict[str, str] | None]
 ) -> dict[str, Any]:
-    """Runs POV-Ray, on a thread of its own, and saves what `draw` made; what `save` returns is told
-    beside the picture."""
+    """Runs POV-Ray, on a thread of its own, and saves what `draw` made; what `save` returns, if
+    anything, is told beside the picture."""
     with work.scene_folder() as folder:
         try:
             made = work.long(
@@ -97,7 +93,7 @@ def _drawn(
                 where = f" (its files: {folder.path})" if work.job.keep != "never" else ""
                 raise Failed(ExitCode.POVRAY, f"{error}{where}") from error
             raise
-        saved = save(made)
+        saved = save(made) or {}
     work.save_thumbnail()
     return {**saved, **made.parts, "picture": work.request.out}
 
