@@ -3,12 +3,15 @@
 
 Run by samples/quickstart.sh with the system's Python:
     compare.py --blend build/samples/street.blend --out build/samples [--all [--write]]
+        [--sky-occlusion 0]
 
 Everything is rendered in one batch job: one reading of the .blend, the levels built when they are
 stale, then for each camera a 16-sample reference, full detail and Pixel Error 0.5, 1, 2, 4 with the
 antialiasing of final pictures, the masks of covered pixels, and the false-colored picture.
 With --write the repository's pages show this run: the block of README.md that is between marks, its
-picture strip, and samples/docs/results/street.md.
+picture strip, and samples/docs/results/street.md. With --sky-occlusion the sky's light is shaded by
+so many rays a point instead of as many as the quality asks for (0: by none, so that only shapes
+and materials differ), and --write shows it beside, in samples/docs/results/street_sky.md.
 """
 
 import argparse
@@ -38,12 +41,19 @@ def name_of(pixel_error: float) -> str:
     return "full" if pixel_error == 0 else f"{pixel_error:g}px"
 
 
-def views_of(camera: str, folder: Path) -> list[dict]:
-    """What batch.py is asked to render for one camera."""
+def views_of(camera: str, folder: Path, light: dict) -> list[dict]:
+    """What batch.py is asked to render for one camera, under the light (options of a view)."""
 
     def view(name: str, pixel_error: float, **more) -> dict:
         out = str(folder / f"{camera}_{name}.png")
-        return {"camera": camera, "pixel_error": pixel_error, "size": SIZE, "out": out, **more}
+        return {
+            "camera": camera,
+            "pixel_error": pixel_error,
+            "size": SIZE,
+            "out": out,
+            **light,
+            **more,
+        }
 
     views = [view("reference", 0.0, antialias="reference")]
     for pixel_error in (0.0, *PIXEL_ERRORS):
@@ -53,10 +63,11 @@ def views_of(camera: str, folder: Path) -> list[dict]:
     return views
 
 
-def render(blend: Path, folder: Path, cameras: tuple[str, ...]) -> dict:
+def render(blend: Path, folder: Path, cameras: tuple[str, ...], light: dict) -> dict:
     """Runs the batch job; returns its report."""
     views, report = folder / "views.json", folder / "batch.json"
-    views.write_text(json.dumps([v for c in cameras for v in views_of(c, folder)]), "utf-8")
+    asked = [view for camera in cameras for view in views_of(camera, folder, light)]
+    views.write_text(json.dumps(asked), "utf-8")
     command = ["/usr/bin/python3", str(ADDON / "batch.py"), "render", str(blend)]
     command += ["--store", str(folder / "store"), "--views", str(views), "--json", str(report)]
     done = subprocess.run(command, check=False)
@@ -124,17 +135,21 @@ def write_strip(camera: str, folder: Path) -> Path:
     return path
 
 
-def write_pages(folder: Path) -> None:
+def write_pages(folder: Path, light: dict) -> None:
     """The pages of the repository that show what this run measured."""
     sys.path.insert(0, str(ROOT / "tests" / "bench"))
     from benching import write_results
 
     report = json.loads((folder / "report.json").read_text("utf-8"))
+    lines = (folder / "report.md").read_text("utf-8").splitlines()
+    table = [line for line in lines[2:] if not line.startswith("![")]
+    if light:
+        title = f"The street, with sky occlusion {light['sky_occlusion']}"
+        write_results(ROOT / "samples/docs/results/street_sky", title, table, report)
+        return
     readme = ROOT / "README.md"
     readme.write_text(with_strip(readme.read_text("utf-8"), strip_block(report)), "utf-8")
     shutil.copy(folder / "strip_far.png", HERE / "strip_far.png")
-    lines = (folder / "report.md").read_text("utf-8").splitlines()
-    table = [line for line in lines[2:] if not line.startswith("![")]
     write_results(ROOT / "samples/docs/results/street", "The street", table, report)
 
 
@@ -144,13 +159,15 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder")
     parser.add_argument("--all", action="store_true", help="also the middle and near cameras")
     parser.add_argument("--write", action="store_true", help="with --all: into the pages")
+    parser.add_argument("--sky-occlusion", type=int, metavar="RAYS", help="of all its pictures")
     options = parser.parse_args()
     if options.write and not options.all:
         parser.error("--write shows all cameras: it needs --all")
     folder = options.out.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     cameras = CAMERAS if options.all else CAMERAS[:1]
-    batch = render(options.blend.resolve(), folder, cameras)
+    light = {} if options.sky_occlusion is None else {"sky_occlusion": options.sky_occlusion}
+    batch = render(options.blend.resolve(), folder, cameras, light)
     empty = native.povray_empty_bytes(*SIZE)
     differences = {camera: compared(camera, folder) for camera in cameras}
     strips = [write_strip(camera, folder) for camera in cameras]
@@ -159,7 +176,7 @@ def main() -> None:
         print(f"picture strip: {strip}")
     print(f"report: {report}")
     if options.write:
-        write_pages(folder)
+        write_pages(folder, light)
 
 
 if __name__ == "__main__":
