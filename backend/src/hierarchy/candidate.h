@@ -27,6 +27,8 @@ struct StandInCandidate {
     Kind kind = Kind::Mesh;
     double error = 0;
     double max_error = 0;
+    /// The error is that or more: measuring stopped where it was of no use any more.
+    bool at_least = false;
     Payload payload;
     std::vector<Material> materials;  // by slot
     double clear_area = 0;            // of a mesh's boxes that stand for what is thin
@@ -34,6 +36,8 @@ struct StandInCandidate {
     /// Solids that are matched in area and centroid, but by few rays: settle() uses more. No state:
     /// solids in all states may be so, those that stay are settled once, and nothing depends on it.
     bool by_few_rays = false;
+    /// It was looked at from all sides (evaluators/view_error.h). No state: in each it is so once.
+    bool viewed = false;
 
     /// Each throws Error(Internal) where it is another kind's.
     const Mesh& mesh() const { return held<Mesh>(kind, payload, "mesh"); }

@@ -3,6 +3,7 @@
 
 #include "hierarchy/evaluators/brightness_match.h"
 #include "hierarchy/evaluators/patch_error.h"
+#include "hierarchy/evaluators/view_error.h"
 #include "hierarchy/lamp_materials.h"
 #include "solids/painted_box.h"
 
@@ -67,12 +68,15 @@ bool prove_candidates(std::vector<StandInCandidate>& some, std::vector<StandInCa
                       const MeasuredFinest& finest, const Job& job) {
     bool changed = false;
     for (size_t i = some.size(); i-- > 0;) {
-        if (some[i].state != CandidateState::Unproven)
+        const bool unproven = some[i].state == CandidateState::Unproven;
+        if (!unproven && some[i].viewed)
             continue;
         StandInCandidate proven = some[i];
         const double next =
             i + 1 < some.size() ? some[i + 1].error : std::numeric_limits<double>::infinity();
-        const bool good = prove(proven, finest, next, job);
+        const bool good = !unproven || prove(proven, finest, next, job);
+        if (!unproven)
+            count_views(proven, finest, job);
         changed = changed || !good || proven.error > some[i].error;
         for (size_t k = all.size(); k-- > 0;) {
             if (!is_same(all[k], some[i]))

@@ -19,7 +19,8 @@ void keep_pareto_front(std::vector<StandInCandidate>& candidates, uint64_t fines
 using Keep = std::function<void(std::vector<StandInCandidate>&)>;
 
 /// Looks at those of `some` that nobody has looked at: what shows too little is in neither list any
-/// more, and what does not look like the finest is farther off. Whether anything changed.
+/// more, and what does not look like the finest, or is seen to be farther off, is. Whether anything
+/// changed.
 bool prove_candidates(std::vector<StandInCandidate>& some, std::vector<StandInCandidate>& all,
                       const MeasuredFinest& finest, const Job& job);
 

@@ -81,6 +81,7 @@ MeasuredFinest measure_finest(const Mesh& mesh, std::span<const Material> materi
                          .attributes;
     out.glows = std::any_of(materials.begin(), materials.end(), emits);
     out.layered = options.in_layers && is_flat(out.attributes);
+    out.views = std::make_unique<const measure::ViewDistances>(mesh, out.scene());
     if (!options.environment)
         out.patches.emplace(mesh, out.sampler(), *out.skin, out.cast, options.seed);
     return out;

@@ -9,8 +9,9 @@ namespace lodestone::hierarchy {
 namespace {
 
 void set_error(StandInCandidate& candidate, const measure::SurfaceDeviation& deviation,
-               const MeasuredFinest& finest) {
+               const MeasuredFinest& finest, double useless) {
     candidate.error = finest.error_at(deviation.error);
+    candidate.at_least = candidate.error > useless;
     candidate.max_error = std::max(candidate.error, finest.error_at(deviation.max));
 }
 
@@ -35,7 +36,7 @@ void measure_mesh(StandInCandidate& candidate, const MeasuredFinest& finest, con
     set_error(candidate,
               finest.options.group ? finest.reference->roughly(mesh, surface, known, most, job)
                                    : finest.reference->of(mesh, surface, known, most, job),
-              finest);
+              finest, useless);
 }
 
 void measure_primitive(StandInCandidate& candidate, const MeasuredFinest& finest, double useless,
@@ -44,7 +45,16 @@ void measure_primitive(StandInCandidate& candidate, const MeasuredFinest& finest
     set_error(candidate,
               finest.reference->of(solid, finest.looks->of(candidate.materials[0]),
                                    finest.distance_for(useless), job),
-              finest);
+              finest, useless);
+}
+
+void measure_to_the_end(StandInCandidate& candidate, const MeasuredFinest& finest, const Job& job) {
+    if (!candidate.at_least)
+        return;
+    if (candidate.kind == Kind::Mesh)
+        measure_mesh(candidate, finest, job);
+    else
+        measure_primitive(candidate, finest, std::numeric_limits<double>::infinity(), job);
 }
 
 }  // namespace lodestone::hierarchy

@@ -16,7 +16,8 @@ measure::DeviationReference::RepaintResult repaint(
     double useless = std::numeric_limits<double>::infinity());
 
 /// Fills the errors of a candidate that is a mesh of the finest's materials, or of these and
-/// others. Where the error is much larger than `useless` it may be infinite, which takes less time.
+/// others. Where the error is larger than `useless` it may be less than it is (at_least), and
+/// infinite where it is much larger, which takes less time.
 void measure_mesh(StandInCandidate& candidate, const MeasuredFinest& finest, const Job& job,
                   double useless = std::numeric_limits<double>::infinity(),
                   const measure::DeviationReference::RepaintResult& known = {});
@@ -25,5 +26,9 @@ void measure_mesh(StandInCandidate& candidate, const MeasuredFinest& finest, con
 /// asked, of a group too: few do not tell what it hides.
 void measure_primitive(StandInCandidate& candidate, const MeasuredFinest& finest, double useless,
                        const Job& job);
+
+/// Measures again, without a limit, what was measured until it was of no use: it turned out to be
+/// of use after all.
+void measure_to_the_end(StandInCandidate& candidate, const MeasuredFinest& finest, const Job& job);
 
 }  // namespace lodestone::hierarchy

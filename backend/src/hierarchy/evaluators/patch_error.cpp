@@ -2,7 +2,9 @@
 #include "hierarchy/evaluators/patch_error.h"
 
 #include "hierarchy/evaluators/brightness_match.h"
+#include "hierarchy/evaluators/distance_error.h"
 #include "hierarchy/evaluators/traced_candidate.h"
+#include "hierarchy/evaluators/view_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +53,8 @@ bool prove(StandInCandidate& candidate, const MeasuredFinest& finest, double use
     come_to(candidate, CandidateState::Measured);
     if (is_mesh && !shows_as_much_in(mesh, scene, finest, job))
         return false;
+    measure_to_the_end(candidate, finest, job);
+    count_views(candidate, scene, finest, job);
     if (!finest.patches)
         return true;
     const double own = candidate.error - finest.options.child_error;

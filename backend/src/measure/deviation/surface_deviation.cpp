@@ -347,10 +347,14 @@ SurfaceDeviation DeviationReference::compare(const SeenSamples& seen, const Stan
     if (there.error > useless)
         return there;
     std::vector<Sample> samples;
-    add_area_samples(mesh, scenes.whole(), stand_in.samples, options_.seed, samples);
+    const bool box = stand_in.exact != nullptr && stand_in.exact->box;
+    if (box)
+        add_box_samples(stand_in.exact->primitive, samples);
+    else
+        add_area_samples(mesh, scenes.whole(), stand_in.samples, options_.seed, samples);
     add_vertex_samples(mesh, scenes.whole(),
                        weighted_vertices(mesh, stand_in.vertices, options_.seed), samples);
-    if (stand_in.exact != nullptr && !stand_in.exact->box)
+    if (stand_in.exact != nullptr && !box)
         move_onto(stand_in.exact->primitive, samples);
     // The looks of the stand-in at its places have been asked by the visible points already.
     const Against to_finest{scenes_, *seen.looks, scenes_,    palette_,

@@ -77,8 +77,8 @@ public:
                         const RepaintResult& known, double useless, const Job& job) const;
 
     /// The deviation of a box or an ellipsoid that shows one look everywhere. Distances to it are
-    /// exact; they are measured from a quarter of the points, and from the corners of a box or from
-    /// as many points as tell an ellipsoid.
+    /// exact; they are measured from a quarter of the points, and from the corners of a box and 25
+    /// points of each of its sides, or from as many points as tell an ellipsoid.
     SurfaceDeviation of(const lodestone::Solid& stand_in, uint16_t look, double useless,
                         const Job& job) const;
 

@@ -160,6 +160,27 @@ void add_area_samples(const Mesh& mesh, const ray::MeshScene& scene, uint32_t co
     }
 }
 
+void add_box_samples(const Primitive& box, std::vector<SurfaceSample>& out) {
+    // The points along an edge.
+    // Taste: an odd number, for the middle is farthest from what an open box is made of; more know
+    // the sides better, in time in proportion to its square.
+    constexpr int kAlong = 5;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int u = (axis + 1) % 3;
+        const int v = (axis + 2) % 3;
+        const double area = 4 * box.half_size[u] * box.half_size[v] / (kAlong * kAlong);
+        for (int number = 0; number < 2 * kAlong * kAlong; ++number) {
+            const int in_row = number % kAlong;
+            const int row = number / kAlong % kAlong;
+            glm::dvec3 at(0.0);
+            at[axis] = number < kAlong * kAlong ? -1 : 1;
+            at[u] = (2.0 * in_row + 1) / kAlong - 1;
+            at[v] = (2.0 * row + 1) / kAlong - 1;
+            out.push_back({box.center + box.axes * (at * box.half_size), area});
+        }
+    }
+}
+
 void add_vertex_samples(const Mesh& mesh, const ray::MeshScene& scene,
                         const std::vector<WeightedVertex>& vertices,
                         std::vector<SurfaceSample>& out) {

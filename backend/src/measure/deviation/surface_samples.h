@@ -6,6 +6,7 @@
 #include "measure/deviation/distinct_looks.h"
 #include "measure/deviation/look_scenes.h"
 #include "measure/visible/visible_sampler.h"
+#include "model/primitive.h"
 
 #include <limits>
 
@@ -51,6 +52,10 @@ std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, u
 /// only their places count. No point is added where the scene shows nothing.
 void add_area_samples(const Mesh& mesh, const ray::MeshScene& scene, uint32_t count, uint64_t seed,
                       std::vector<SurfaceSample>& out);
+
+/// Adds 25 points of each side of a box, its middle among them; each has its share of the side's
+/// area in m^2. A few points all over would miss the ends of a long one.
+void add_box_samples(const Primitive& box, std::vector<SurfaceSample>& out);
 
 /// Adds the vertices themselves, where the scene shows anything at them.
 void add_vertex_samples(const Mesh& mesh, const ray::MeshScene& scene,

@@ -63,6 +63,41 @@ TEST_F(StandInDistance, ABoxIsOffByWhatItIsLarger) {
     EXPECT_EQ(wider.state, hierarchy::CandidateState::Measured) << "measuring proves nothing";
 }
 
+// A lamp's hollow post became a post whose ends were twice as far off as its error: 128 points all
+// over it hardly met them.
+TEST_F(StandInDistance, TheEndsOfALongBoxCount) {
+    Mesh tube = shapes::box({-1.35, -0.21, -0.21}, {1.35, 0.21, 0.21});
+    std::erase_if(tube.triangles, [&](const Triangle& t) {
+        return tube.positions[t.x].x == tube.positions[t.y].x &&
+               tube.positions[t.x].x == tube.positions[t.z].x;
+    });
+    ASSERT_EQ(tube.triangles.size(), 8u);
+    for (const uint64_t seed : {1u, 2u, 3u, 4u}) {
+        hierarchy::FinestOptions options;
+        options.seed = seed;
+        const hierarchy::MeasuredFinest finest = measured(tube, options);
+        hierarchy::StandInCandidate post = box_of({1.35, 0.21, 0.21});
+        measure_primitive(post, finest, kEver, {});
+        EXPECT_NEAR(post.error, 0.21, 0.01) << seed;
+    }
+}
+
+TEST_F(StandInDistance, ALimitTellsThatTheErrorIsAtLeastThat) {
+    const Mesh cube = shapes::box({-1, -1, -1}, {1, 1, 1});
+    const hierarchy::MeasuredFinest finest = measured(cube);
+    hierarchy::StandInCandidate wider = box_of({1.25, 1, 2});
+    measure_primitive(wider, finest, 0.1, {});
+    EXPECT_TRUE(wider.at_least);
+    measure_to_the_end(wider, finest, {});
+    EXPECT_FALSE(wider.at_least);
+    EXPECT_NEAR(wider.error, 1, 0.05);
+    hierarchy::StandInCandidate level = level_of(shapes::box({-1, -1, -1}, {1, 1, 2}));
+    measure_mesh(level, finest, {}, 2);
+    EXPECT_FALSE(level.at_least);
+    measure_to_the_end(level, finest, {});
+    EXPECT_NEAR(level.error, 1, 0.05);
+}
+
 TEST_F(StandInDistance, WhatTheFinestIsOffByAddsUp) {
     const Mesh cube = shapes::box({-1, -1, -1}, {1, 1, 1});
     hierarchy::FinestOptions options;

@@ -39,3 +39,27 @@ TEST(SeenFromOutside, InteriorTrianglesAreNotSeenAndOuterOnesAre) {
     for (size_t i = 12 + sphere + 2; i < seen.size(); ++i)
         EXPECT_EQ(seen[i], 1) << i;
 }
+
+// Chairs seen from above had holes: of triangles that see a little of the sky alone two in three
+// were left out.
+TEST(SeenFromOutside, ThingsInADeepBoxAreSeenFromItsOpening) {
+    Mesh mesh = shapes::box({0, 0, 0}, {3, 3, 0.1});
+    append(mesh, shapes::box({0, 0, 0.1}, {3, 0.1, 4}), {});
+    append(mesh, shapes::box({0, 2.9, 0.1}, {3, 3, 4}), {});
+    append(mesh, shapes::box({0, 0.1, 0.1}, {0.1, 2.9, 4}), {});
+    append(mesh, shapes::box({2.9, 0.1, 0.1}, {3, 2.9, 4}), {});
+    const size_t first = mesh.triangles.size();
+    append(mesh, shapes::sphere(0.4, 3), {glm::dmat3(1.0), {1.5, 1.5, 0.6}});
+    size_t up = 0;
+    size_t missed = 0;
+    const std::vector<uint8_t> seen = measure::seen_from_outside(mesh, ray::MeshScene(mesh), 16, 1);
+    for (size_t i = first; i < seen.size(); ++i) {
+        const glm::dvec3 normal = glm::normalize(area_vector(mesh, i));
+        if (normal.z < 0.25)
+            continue;
+        ++up;
+        missed += seen[i] == 0 ? 1 : 0;
+    }
+    EXPECT_GT(up, 400u);
+    EXPECT_LE(missed, up / 50);
+}

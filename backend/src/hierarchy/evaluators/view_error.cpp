@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hierarchy/evaluators/view_error.h"
+
+#include "hierarchy/evaluators/traced_candidate.h"
+
+#include <algorithm>
+
+namespace lodestone::hierarchy {
+namespace {
+
+// Something seen from one side may be so many times farther off than the error: few pixels tell it.
+// Taste: a larger value lets stand-ins be farther off where they are seen from one side only.
+constexpr double kFartherInView = 1.25;
+
+double tolerated(const StandInCandidate& candidate) {
+    return kFartherInView * candidate.error;
+}
+
+/// Points and corners all over two surfaces tell how far off anything is, if not how much of a
+/// picture that is; pictures do not tell it at all.
+bool may_be_farther(const StandInCandidate& candidate) {
+    return candidate.state == CandidateState::Pictured ||
+           candidate.max_error > tolerated(candidate);
+}
+
+/// Whatever was left out of a group's meshes as hidden has no such points.
+bool needs_view(const StandInCandidate& candidate, const MeasuredFinest& finest) {
+    return (finest.options.group && candidate.kind == Kind::Mesh) || may_be_farther(candidate);
+}
+
+}  // namespace
+
+void count_views(StandInCandidate& candidate, const ray::MeshScene& scene,
+                 const MeasuredFinest& finest, const Job& job) {
+    candidate.viewed = true;
+    if (!needs_view(candidate, finest))
+        return;
+    const double child_error = finest.options.child_error;
+    const double most = tolerated(candidate);
+    const auto ways =
+        may_be_farther(candidate) ? measure::ViewedWay::Both : measure::ViewedWay::ToStandIn;
+    const double seen = finest.views->worst(scene, ways, most - child_error, job) + child_error;
+    if (seen <= most)
+        return;
+    candidate.error = seen;
+    candidate.max_error = std::max(candidate.max_error, seen);
+}
+
+void count_views(StandInCandidate& candidate, const MeasuredFinest& finest, const Job& job) {
+    candidate.viewed = true;
+    if (!needs_view(candidate, finest))
+        return;
+    Mesh solid;
+    const Mesh& mesh = traced_mesh(candidate, solid);
+    count_views(candidate, ray::MeshScene(mesh, skin_of(candidate, finest)), finest, job);
+}
+
+}  // namespace lodestone::hierarchy

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// View errors: whether an eye sees a candidate nowhere much farther off than its error.
+#pragma once
+
+#include "hierarchy/candidate.h"
+#include "hierarchy/finest.h"
+
+namespace lodestone::hierarchy {
+
+/// Makes the error of a candidate what is seen from the worst side, where that is more: `viewed`.
+/// `scene` holds what rays meet of it (traced_mesh).
+void count_views(StandInCandidate& candidate, const ray::MeshScene& scene,
+                 const MeasuredFinest& finest, const Job& job);
+/// The same of one of which no scene was made.
+void count_views(StandInCandidate& candidate, const MeasuredFinest& finest, const Job& job);
+
+}  // namespace lodestone::hierarchy

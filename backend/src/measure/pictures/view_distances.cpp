@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/pictures/view_distances.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace lodestone::measure {
+namespace {
+
+/// The pixels of a picture.
+/// Taste: more see smaller things, in time in proportion.
+constexpr double kPixels = 576;
+/// The share of a picture's pixels that may be farther off.
+/// Taste: a larger value loses thin parts, a smaller one counts single spikes.
+constexpr double kMostFar = 0.001;
+/// Pictures show this much around the finest's bound, for larger stand-ins.
+/// Taste: a larger value wastes more rays around the object.
+constexpr double kFrameMargin = 1.1;
+
+std::vector<glm::dvec3> all_directions() {
+    std::vector<glm::dvec3> out;
+    for (int number = 0; number < 27; ++number) {
+        const glm::dvec3 along(number / 9 - 1, number / 3 % 3 - 1, number % 3 - 1);
+        if (along != glm::dvec3(0.0))
+            out.push_back(glm::normalize(along));
+    }
+    return out;
+}
+
+/// The rectangle around a mesh in a picture.
+struct PictureFrame {
+    glm::dvec3 right, up;
+    glm::dvec3 low{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+
+    PictureFrame(const std::vector<glm::dvec3>& points, const glm::dvec3& towards) {
+        const glm::dvec3 other =
+            std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+        right = glm::normalize(glm::cross(other, towards));
+        up = glm::cross(towards, right);
+        for (const glm::dvec3& point : points) {
+            const glm::dvec3 at(glm::dot(point, right), glm::dot(point, up),
+                                glm::dot(point, towards));
+            low = glm::min(low, at);
+            high = glm::max(high, at);
+        }
+        const glm::dvec3 margin = (kFrameMargin - 1) / 2 * (high - low);
+        low -= margin;
+        high += margin;
+    }
+};
+
+/// The corners of a mesh's triangles, each once.
+std::vector<glm::dvec3> corners_of(const Mesh& mesh) {
+    std::vector<uint8_t> used(mesh.positions.size(), 0);
+    for (const Triangle& t : mesh.triangles)
+        used[t.x] = used[t.y] = used[t.z] = 1;
+    std::vector<glm::dvec3> out;
+    for (size_t i = 0; i < used.size(); ++i) {
+        const glm::dvec3 point(mesh.positions[i]);
+        if (used[i] != 0 && std::isfinite(point.x + point.y + point.z))
+            out.push_back(point);
+    }
+    return out;
+}
+
+/// The distance that at most a few of these exceed.
+double most_of(std::vector<double>& far, size_t pixels) {
+    const auto few =
+        std::max<size_t>(1, static_cast<size_t>(kMostFar * static_cast<double>(pixels)));
+    if (far.size() <= few)
+        return 0;
+    std::nth_element(far.begin(), far.begin() + static_cast<std::ptrdiff_t>(few), far.end(),
+                     std::greater<>());
+    return far[few];
+}
+
+}  // namespace
+
+ViewDistances::ViewDistances(const Mesh& finest, const ray::MeshScene& scene)
+    : finest_(finest), scene_(scene), directions_(all_directions()) {}
+
+void ViewDistances::aim() const {
+    rays_.clear();
+    const std::vector<glm::dvec3> corners = corners_of(finest_);
+    if (corners.empty())
+        return;
+    for (uint32_t view = 0; view < directions_.size(); ++view) {
+        const glm::dvec3& towards = directions_[view];
+        const PictureFrame frame(corners, towards);
+        const glm::dvec3 size = frame.high - frame.low;
+        const double cell = std::sqrt(size.x * size.y / kPixels);
+        // A flat thing is a line from its side: nothing to see.
+        if (!(cell > 0) || !std::isfinite(cell) || std::max(size.x, size.y) > cell * kPixels)
+            continue;
+        const double front = frame.high.z + size.x + size.y;
+        const auto columns = static_cast<int>(std::ceil(size.x / cell));
+        const auto rows = static_cast<int>(std::ceil(size.y / cell));
+        for (int pixel = 0; pixel < rows * columns; ++pixel) {
+            const int row = pixel / columns;
+            const double x = frame.low.x + (pixel % columns + 0.5) * size.x / columns;
+            const double y = frame.low.y + (row + 0.5) * size.y / rows;
+            rays_.push_back({x * frame.right + y * frame.up + front * towards, view});
+        }
+    }
+}
+
+const std::vector<ViewDistances::ViewRay>& ViewDistances::rays(const Job& job) const {
+    std::call_once(taken_, [&] {
+        aim();
+        parallel_for((rays_.size() + kBlock - 1) / kBlock, [&](size_t block) {
+            job.check();
+            const ray::FlushDenormals burst;
+            for (size_t i = block * kBlock; i < std::min(rays_.size(), (block + 1) * kBlock); ++i) {
+                ViewRay& one = rays_[i];
+                const ray::RayHit hit = scene_.first_hit(one.origin, -directions_[one.view]);
+                one.seen = hit.hit;
+                one.point = hit.point;
+            }
+        });
+    });
+    return rays_;
+}
+
+double ViewDistances::worst(const ray::MeshScene& stand_in, ViewedWay ways, double near,
+                            const Job& job) const {
+    const std::vector<ViewRay>& asked = rays(job);
+    std::vector<double> off(asked.size(), -1);  // below 0: nothing is there
+    parallel_for((asked.size() + kBlock - 1) / kBlock, [&](size_t block) {
+        job.check();
+        const ray::FlushDenormals burst;
+        uint32_t last = ray::kNoTriangle;
+        uint32_t last_back = ray::kNoTriangle;
+        const auto distance = [&](const ray::MeshScene& scene, const glm::dvec3& point,
+                                  uint32_t& perhaps) {
+            const ray::ClosestPoint closest =
+                scene.closest_point(point, std::numeric_limits<double>::infinity(), perhaps, near);
+            perhaps = closest.triangle;
+            return closest.distance;
+        };
+        for (size_t i = block * kBlock; i < std::min(asked.size(), (block + 1) * kBlock); ++i) {
+            const ViewRay& one = asked[i];
+            ray::RayHit hit;
+            if (ways == ViewedWay::Both)
+                hit = stand_in.first_hit(one.origin, -directions_[one.view]);
+            if (hit.hit && one.seen && glm::length(hit.point - one.point) <= near) {
+                off[i] = 0;
+                continue;
+            }
+            if (one.seen)
+                off[i] = distance(stand_in, one.point, last);
+            if (hit.hit)
+                off[i] = std::max(off[i], distance(scene_, hit.point, last_back));
+        }
+    });
+    double out = 0;
+    std::vector<double> far;
+    for (size_t begin = 0, end = 0; begin < asked.size(); begin = end) {
+        size_t pixels = 0;
+        far.clear();
+        for (end = begin; end < asked.size() && asked[end].view == asked[begin].view; ++end) {
+            pixels += off[end] >= 0 ? 1 : 0;
+            if (off[end] > near && std::isfinite(off[end]))
+                far.push_back(off[end]);
+        }
+        out = std::max(out, most_of(far, pixels));
+    }
+    return out;
+}
+
+}  // namespace lodestone::measure

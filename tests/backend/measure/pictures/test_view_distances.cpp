@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Guards how far off what an eye sees from all around is.
+#include "base/error.h"
+#include "base/parallel.h"
+#include "measure/pictures/view_distances.h"
+#include "scenes/small_meshes.h"
+#include "scenes/with_rays.h"
+
+using namespace lodestone;
+using measure::ViewDistances;
+using measure::ViewedWay;
+
+namespace {
+
+class ViewDistance : public WithRays {
+protected:
+    static double worst(const Mesh& finest, const Mesh& stand_in, ViewedWay ways = ViewedWay::Both,
+                        double near = 0) {
+        const ray::MeshScene scene(finest);
+        return ViewDistances(finest, scene).worst(ray::MeshScene(stand_in), ways, near);
+    }
+};
+
+Mesh with_box(Mesh mesh, const glm::dvec3& low, const glm::dvec3& size) {
+    append(mesh, shapes::box(low, low + size), {});
+    return mesh;
+}
+
+}  // namespace
+
+TEST_F(ViewDistance, NothingIsNowhereFarOff) {
+    EXPECT_EQ(worst({}, {}), 0);
+    EXPECT_EQ(worst({}, shapes::cube()), 0) << "there is no picture of nothing";
+    EXPECT_EQ(worst(shapes::cube(), {}), 0) << "whoever compares distances has found that out";
+    const Mesh sheet = shapes::quad(1, 1);
+    EXPECT_NEAR(worst(sheet, sheet), 0, 1e-6);
+}
+
+TEST_F(ViewDistance, AMeshIsWhereItIs) {
+    const Mesh ball = shapes::sphere(1);
+    EXPECT_NEAR(worst(ball, ball), 0, 1e-6);
+    EXPECT_NEAR(worst(ball, shapes::sphere(0.9)), 0.1, 2e-3);
+    EXPECT_NEAR(worst(ball, shapes::sphere(1.05)), 0.05, 2e-3);
+    EXPECT_LE(worst(ball, shapes::sphere(0.9), ViewedWay::Both, 0.2), 0.2) << "that is near";
+}
+
+// Quantiles of the whole surface did not notice what is seen from one side only.
+TEST_F(ViewDistance, AThingInADeepBoxCountsFromAbove) {
+    Mesh box;
+    const glm::dvec3 walls[][2] = {{{0, 0, 0}, {4, 4, 0.1}},
+                                   {{0, 0, 0}, {0.1, 4, 3}},
+                                   {{3.9, 0, 0}, {0.1, 4, 3}},
+                                   {{0, 0, 0}, {4, 0.1, 3}},
+                                   {{0, 3.9, 0}, {4, 0.1, 3}}};
+    for (const auto& wall : walls)
+        box = with_box(std::move(box), wall[0], wall[1]);
+    const Mesh furnished = with_box(box, {1.7, 1.7, 0.1}, {0.6, 0.6, 0.5});
+    EXPECT_NEAR(worst(furnished, box, ViewedWay::ToStandIn), 0.5, 0.05) << "to the floor";
+    EXPECT_NEAR(worst(box, furnished), 0.5, 0.05) << "nor may it come from nowhere";
+    EXPECT_NEAR(worst(box, furnished, ViewedWay::ToStandIn), 0, 1e-6) << "the floor is there";
+}
+
+TEST_F(ViewDistance, SpikesOfAPixelDoNotCount) {
+    const Mesh plate = shapes::box({0, 0, 0}, {40, 40, 10});
+    EXPECT_LT(worst(with_box(plate, {20, 20, 10}, {0.1, 0.1, 1}), plate), 0.1);
+    EXPECT_NEAR(worst(with_box(plate, {20, 20, 10}, {4, 4, 1}), plate), 1, 0.1);
+}
+
+TEST_F(ViewDistance, PlacesAndSizesDoNotMatter) {
+    const Mesh ball = shapes::sphere(1, 2);
+    const Mesh cube = shapes::cube();
+    const double once = worst(ball, cube);
+    const Affine far{glm::dmat3(1000.0), {1e6, -2e6, 5e5}};
+    Mesh large_ball;
+    Mesh large_cube;
+    append(large_ball, ball, far);
+    append(large_cube, cube, far);
+    EXPECT_NEAR(worst(large_ball, large_cube) / 1000, once, 2e-3 * once);
+}
+
+TEST_F(ViewDistance, SameBitsOnOneAndManyThreads) {
+    const Mesh ball = shapes::sphere(1, 3);
+    const Mesh torus = shapes::torus(24, 8);
+    const auto with = [&](int threads) {
+        const ThreadLimit limit(threads);
+        return worst(ball, torus);
+    };
+    EXPECT_EQ(with(1), with(0));
+}
+
+TEST_F(ViewDistance, BrokenCornersAndCancelingDoNoHarm) {
+    Mesh broken = shapes::cube();
+    broken.normals.clear();
+    broken.positions.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0, 0);
+    broken.triangles.emplace_back(0, 1, static_cast<uint32_t>(broken.positions.size() - 1));
+    EXPECT_NEAR(worst(broken, shapes::cube()), 0, 1e-6);
+    const int32_t cancel = 1;
+    const Job job(&cancel, nullptr, nullptr);
+    const Mesh cube = shapes::cube();
+    const ray::MeshScene scene(cube);
+    const ViewDistances views(cube, scene);
+    EXPECT_THROW(views.worst(scene, ViewedWay::Both, 0, job), Error);
+    EXPECT_NEAR(views.worst(scene, ViewedWay::Both, 0), 0, 1e-6) << "it can be asked again";
+}
