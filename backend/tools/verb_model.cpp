@@ -53,6 +53,26 @@ void split_loose_parts(const CommandArguments& arguments, lds_model* model, int3
                     static_cast<unsigned long long>(done.made));
 }
 
+/// Gives flat groups nested ones, as Blender's add-on does, unless the user says otherwise.
+void structure_groups(const CommandArguments& arguments, lds_model* model, int32_t threads) {
+    const std::string way = arguments.text("groups").value_or("auto");
+    if (way != "auto" && way != "given")
+        throw UsageError("--groups is '" + way + "'; auto or given expected");
+    if (way == "given")
+        return;
+    lds_structure_options options = usual(lds_structure_options_default);
+    options.threads = threads;
+    options.seed = arguments.count("seed", options.seed);
+    lds_structure_report done{};
+    done.struct_size = sizeof done;
+    ProgressBar progress("grouping");
+    check(lds_model_structure(model, nullptr, 0, &options, progress.job(), &done));
+    if (done.made > 0)
+        std::printf("%llu flat groups: %llu groups in them\n",
+                    static_cast<unsigned long long>(done.structured),
+                    static_cast<unsigned long long>(done.made));
+}
+
 /// Fills ratio, triangles, error or pixels. Throws UsageError unless exactly one way is given.
 void set_target(const CommandArguments& arguments, lds_simplify_options& options) {
     options.ratio = arguments.number("ratio", 0, 0, 1);
@@ -219,6 +239,7 @@ int run_build(const CommandArguments& arguments) {
     options.rebuild = arguments.has("rebuild") ? 1 : 0;
     const ModelHandle model = read_model(input);
     split_loose_parts(arguments, model.get(), options.threads);
+    structure_groups(arguments, model.get(), options.threads);
     lds_build_report done{};
     done.struct_size = sizeof done;
     {

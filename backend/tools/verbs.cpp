@@ -62,6 +62,8 @@ const std::vector<CommandVerb>& verbs() {
           {"samples", "N", "samples to measure an error (default 2048)"},
           {"loose-parts", "WAY",
            "one: a mesh is one object; objects: so are its loose parts; auto (default): if small"},
+          {"groups", "WAY",
+           "given: those of the file; auto (default): nested ones where many things lie in one"},
           {"rebuild", "", "also build what has not changed"},
           kJson,
           kThreads,

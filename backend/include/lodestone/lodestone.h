@@ -357,7 +357,8 @@ LDS_API lds_status lds_model_create(lds_model** out_model);
 LDS_API void lds_model_destroy(lds_model* model);
 
 /* Reads a .obj, .ply, .glb or .gltf file, or a store (its folder or tileset.json). A store's meshes
-   are read when they are needed. */
+   are read when they are needed. LDS_ERROR_BAD_FILE, too, for a file with errors of which no
+   triangle is left. */
 LDS_API lds_status lds_model_read(const char* path, lds_model** out_model);
 /* Writes the finest representations as .obj, .ply or .glb, told by the name's ending. */
 LDS_API lds_status lds_model_write(lds_model* model, const char* path);

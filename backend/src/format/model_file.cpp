@@ -177,13 +177,27 @@ std::string endings(bool written) {
     return out;
 }
 
+/// Throws Error: BadFile, for a file with errors in it of which no triangle is left. One that has
+/// none is a model of nothing.
+void refuse_unreadable(const std::filesystem::path& path, const Model& model,
+                       const Problems& problems) {
+    const auto first = std::find_if(problems.begin(), problems.end(), [](const Problem& problem) {
+        return problem.severity == Severity::Error;
+    });
+    if (first != problems.end() && totals(model).triangles_unique == 0)
+        fail(Status::BadFile, "nothing of '", path.string(), "' can be read: ", first->message);
+}
+
 }  // namespace
 
 Model read_model(const std::filesystem::path& path, Problems& problems) {
     const std::string extension = extension_of(path);
     for (const ModelFormat& format : kFormats) {
-        if (format.ending == extension)
-            return format.read(path, problems);
+        if (format.ending != extension)
+            continue;
+        Model model = format.read(path, problems);
+        refuse_unreadable(path, model, problems);
+        return model;
     }
     fail(Status::BadFile, "'", path.string(), "' is not read: only ", endings(false), " are");
 }

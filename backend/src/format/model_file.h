@@ -10,7 +10,8 @@ namespace lodestone::format {
 
 /// .obj and .ply (coordinates as in the file), .glb and .gltf (Y up turned to Z up); see their
 /// headers. Polygons are cut as fans from their first corner; meshes are repaired; other files are
-/// opened only inside the folder of `path`. Throws Error(Io) or Error(BadFile) naming the file.
+/// opened only inside the folder of `path`. Throws Error(Io) or Error(BadFile) naming the file; the
+/// latter, too, where there are errors in it and no triangle is left.
 Model read_model(const std::filesystem::path& path, Problems& problems);
 
 /// .glb keeps placements and sharing. .obj (with an .mtl and the pictures, "<16 hex>.png", beside
