@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What crowds cost from afar: `cmake --build build/release --target bench_crowds`, then
+// build/release/tests/bench_crowds [STORE]. Houses of twelve boxes stand 14 m apart in blocks of
+// 8 x 8, the blocks in towns of 8 x 8, and so on; 16 of them differ. Each city is built (all of its
+// levels, into STORE), then looked at from an oblique angle in which it is 1,000, 100 and 30 pixels
+// wide. What a picture uses should be bounded by its pixels: (occurrences + solids + triangles /
+// 100) a covered pixel at most 2, and hardly more for ten times as many houses.
+#include "base/clock.h"
+#include "base/random.h"
+#include "choose/criterion.h"
+#include "choose/cut.h"
+#include "hierarchy/hierarchy_build.h"
+#include "ray/mesh_scene.h"
+#include "scenes/small_models.h"
+#include "segment/store.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+using namespace lodestone;
+
+namespace {
+
+constexpr int kHouses = 16;
+constexpr size_t kAlong = 8;  // things along a side of a block
+constexpr double kStep = 14;
+
+struct CityKind {
+    size_t houses;
+    int materials;
+    double gap;  // metres between the walls of mean houses
+};
+
+Mesh house(PcgRandom& random, double width, int materials) {
+    const auto between = [&](double low, double high) {
+        return low + (high - low) * random.uniform();
+    };
+    const glm::dvec3 size(width * between(0.9, 1), width * between(0.9, 1), between(7, 14));
+    Mesh out = shapes::box({0, 0, 0}, size);
+    for (int part = 1; part < 12; ++part) {
+        const glm::dvec3 low(size.x * between(0, 0.7), size.y * between(0, 0.7),
+                             size.z * between(0.2, 0.95));
+        const glm::dvec3 part_size(0.3 * size.x, 0.3 * size.y, size.z * between(0.1, 0.3));
+        append(out, shapes::box(low, low + part_size), {}, static_cast<uint16_t>(part % materials));
+    }
+    return out;
+}
+
+Model city(const CityKind& kind) {
+    Model model;
+    model.costs = povray::povray_costs();
+    PcgRandom random(1, 1);
+    std::vector<uint32_t> materials;
+    for (int i = 0; i < kind.materials; ++i) {
+        const auto channel = [&] { return 0.1 + 0.7 * random.uniform(); };
+        materials.push_back(static_cast<uint32_t>(model.materials.size()));
+        model.materials.push_back(
+            models::colored("wall " + std::to_string(i), {channel(), channel(), channel()}));
+    }
+    std::vector<ObjectIndex> houses;
+    for (int i = 0; i < kHouses; ++i) {
+        const ObjectIndex one = models::add_leaf(model, "house " + std::to_string(i),
+                                                 house(random, kStep - kind.gap, kind.materials));
+        model.materials.pop_back();
+        Representation& finest = model.objects[one].representations[0];
+        finest.materials = materials;
+        summarize(finest, model);
+        houses.push_back(one);
+    }
+    // Every block is one of its own: nothing is shared but houses.
+    const auto block = [&](double step, size_t most, const auto& thing) {
+        std::vector<Placement> placements;
+        for (size_t i = 0; i < std::min<size_t>(most, kAlong * kAlong); ++i) {
+            const size_t line = i / kAlong;
+            const auto x = static_cast<double>(i % kAlong);
+            const auto y = static_cast<double>(line);
+            placements.push_back(
+                {thing(), models::moved(step * x, step * y, 0), "thing " + std::to_string(i)});
+        }
+        return models::add_group(model, "block " + std::to_string(model.objects.size()),
+                                 std::move(placements));
+    };
+    std::vector<ObjectIndex> row;
+    for (size_t made = 0; made < kind.houses; made += kAlong * kAlong)
+        row.push_back(block(kStep, kind.houses - made,
+                            [&] { return houses[random.next() % houses.size()]; }));
+    for (double step = kStep * static_cast<double>(kAlong); row.size() > 1;
+         step *= static_cast<double>(kAlong)) {
+        std::vector<ObjectIndex> above;
+        for (size_t at = 0; at < row.size();)
+            above.push_back(block(step, row.size() - at, [&] { return row[at++]; }));
+        row = std::move(above);
+    }
+    model.root = row[0];
+    summarize_assemblies(model, bottom_up(model));
+    return model;
+}
+
+/// A camera whose picture shows the model so many pixels wide, from 27 degrees above.
+View view_of(const Bound& bound, double pixels) {
+    View view = models::view_from(0, 1);
+    const double pixel = 2 * bound.radius / pixels;
+    const double away = pixel / choose::pixel_size(view, 1) + bound.radius;
+    const glm::dvec3 towards = glm::normalize(glm::dvec3(0.5, -1, 0.56));
+    view.camera.position = bound.center + away * towards;
+    view.camera.direction = -towards;
+    view.camera.right = glm::normalize(glm::cross(view.camera.direction, glm::dvec3(0, 0, 1)));
+    view.camera.up = 0.5625 * glm::cross(view.camera.right, view.camera.direction);
+    return view;
+}
+
+/// The pixels of a picture that boxes around the houses cover.
+size_t covered_pixels(const Model& model, double pixels) {
+    Mesh boxes;
+    for_each_occurrence(model, [&](const Occurrence& one) {
+        const Box3 box = model.objects[one.object].bound().box;
+        append(boxes, shapes::box(box.low, box.high), one.world);
+    });
+    const Bound& bound = model.objects[model.root].bound();
+    const View view = view_of(bound, pixels);
+    const ray::MeshScene scene(boxes);
+    const auto side = static_cast<int>(pixels);
+    const double pixel = 2 * bound.radius / pixels;
+    const glm::dvec3 right = view.camera.right;
+    const glm::dvec3 up = glm::normalize(view.camera.up);
+    size_t covered = 0;
+    for (int row = 0; row < side; ++row) {
+        for (int column = 0; column < side; ++column) {
+            const glm::dvec3 at = bound.center + (column + 0.5 - pixels / 2) * pixel * right +
+                                  (row + 0.5 - pixels / 2) * pixel * up;
+            covered +=
+                scene.occluded(at - 3 * bound.radius * view.camera.direction, view.camera.direction)
+                    ? 1
+                    : 0;
+        }
+    }
+    return covered;
+}
+
+void measure_city(const CityKind& kind, const std::string& store) {
+    Model model = city(kind);
+    Problems problems;
+    hierarchy::BuildSettings settings;
+    settings.rebuild = true;
+    const double start = cpu_seconds();
+    hierarchy::build_hierarchy(model, segment::Store(store), settings, problems, {});
+    const double built = cpu_seconds() - start;
+    for (const double pixels : {1000.0, 100.0, 30.0}) {
+        const Bound& bound = model.objects[model.root].bound();
+        const choose::Cut cut = choose::choose_cut(model, view_of(bound, pixels));
+        size_t solids = 0;
+        for (const uint32_t index : cut.chosen) {
+            const choose::CutNode& node = cut.nodes[index];
+            const Representation& drawn = model.objects[node.object].representations[node.lod];
+            if (drawn.summary.kind == Kind::Composite)
+                solids += drawn.composite().solids.size();
+            else if (drawn.summary.kind != Kind::Mesh)
+                ++solids;
+        }
+        const size_t covered = covered_pixels(model, pixels);
+        const double used = static_cast<double>(cut.chosen.size() + solids) +
+                            static_cast<double>(cut.triangles) / 100;
+        std::printf("| %zu | %d | %.0f | %.1f | %.0f | %zu | %zu | %zu | %zu | %.2f |\n",
+                    kind.houses, kind.materials, kind.gap, built, pixels, covered,
+                    cut.chosen.size(), solids, static_cast<size_t>(cut.triangles),
+                    used / static_cast<double>(std::max<size_t>(1, covered)));
+        std::fflush(stdout);
+    }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    const std::string store =
+        count > 1 ? arguments[1]
+                  : (std::filesystem::temp_directory_path() / "lodestone_bench_crowds").string();
+    std::printf(
+        "| houses | materials | gap, m | build, CPU s | pixels wide | covered | "
+        "occurrences | solids | triangles | used a covered pixel (<= 2) |\n"
+        "|---|---|---|---|---|---|---|---|---|---|\n");
+    try {
+        for (const CityKind& kind :
+             {CityKind{1000, 8, 4}, CityKind{10000, 8, 4}, CityKind{10000, 1, 4},
+              CityKind{10000, 8, 0}, CityKind{100000, 8, 4}})
+            measure_city(kind, store);
+        if (count <= 1)
+            std::filesystem::remove_all(store);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+    return 0;
+}
