@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "hierarchy/flattened_group.h"
 #include "hierarchy/run/stand_in_surroundings.h"
+#include "measure/pictures/cube_views.h"
 #include "ray/mesh_scene.h"
 
 #include <algorithm>
@@ -17,6 +18,7 @@ namespace lodestone::seen {
 /// A picture of so many pixels is as wide as it is far from the eye.
 inline constexpr double kPixelAt1m = 1.0 / 1000;
 inline constexpr double kQuantile = 0.999;
+
 /// A level, or the finest: a group's with everything below it.
 struct Surface {
     Mesh mesh;
@@ -38,19 +40,6 @@ struct Seen {
     double share = 0;  // of pixels that are farther off than the error
     size_t pixels = 0;
 };
-
-inline std::vector<glm::dvec3> directions() {
-    std::vector<glm::dvec3> out;
-    for (int x = -1; x <= 1; ++x) {
-        for (int y = -1; y <= 1; ++y) {
-            for (int z = -1; z <= 1; ++z) {
-                if (x != 0 || y != 0 || z != 0)
-                    out.push_back(glm::normalize(glm::dvec3(x, y, z)));
-            }
-        }
-    }
-    return out;
-}
 
 /// The eye in a direction from the middle of the bound, at a distance from the bound as the cut
 /// counts it.
@@ -131,7 +120,7 @@ inline constexpr double kEnoughPixels = 2000;
 /// thin.
 inline Seen seen_worst(const Bound& bound, const Surface& finest, const Surface& level, int side,
                        double error, size_t* direction = nullptr) {
-    const std::vector<glm::dvec3> all = directions();
+    const std::vector<glm::dvec3> all = measure::cube_directions();
     Seen out;
     for (size_t i = 0; i < all.size(); ++i) {
         const Eye eye = eye_at(bound, all[i], error / kPixelAt1m);

@@ -53,8 +53,9 @@ public:
         size_t direction = 0;
         worst(index, finest, level, error, direction);
         constexpr int kSide = 180;
-        const seen::Eye eye = seen::eye_at(model_.objects[index].bound(),
-                                           seen::directions()[direction], error / seen::kPixelAt1m);
+        const seen::Eye eye =
+            seen::eye_at(model_.objects[index].bound(), measure::cube_directions()[direction],
+                         error / seen::kPixelAt1m);
         const std::vector<double> there = seen::distances(eye, finest, level, kSide, error);
         const std::vector<double> back = seen::distances(eye, level, finest, kSide, error);
         image::Image out;

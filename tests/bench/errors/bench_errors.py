@@ -99,9 +99,10 @@ def worst_lines(worst: list[LevelSeen]) -> list[str]:
     for level in worst:
         one = level.line
         name = one["object"].replace("|", "/")
+        seen = level.times * one["error"]
         lines.append(
             f"| {level.scene} | {name} | {one['lod']} | {one['kind']} | {one['triangles']:,} of "
-            f"{one['of']:,} | {one['error']:.3g} | {one['seen']:.3g} | {level.times:.2f} | "
+            f"{one['of']:,} | {one['error']:.3g} | {seen:.3g} | {level.times:.2f} | "
             f"{100 * one['share']:.1f} % |"
         )
     return lines

@@ -2,6 +2,7 @@
 #include "measure/pictures/picture_agreement.h"
 
 #include "base/parallel.h"
+#include "measure/pictures/cube_views.h"
 #include "measure/pictures/glass_rays.h"
 #include "measure/pictures/picture_misses.h"
 #include "measure/visible/sobol_points.h"
@@ -32,14 +33,12 @@ constexpr double kMostMisses = 2;
 // Taste: a larger value wastes more samples around the object.
 constexpr double kMargin = 1.1;
 
-/// The directions to 13 faces, edges and corners of a cube from its middle: one of each opposite
-/// pair, in turns.
+/// One of each opposite pair of 26, in turns.
 std::vector<glm::dvec3> directions() {
-    std::vector<glm::dvec3> out;
-    for (int number = 0; number < 13; ++number) {
-        const glm::dvec3 along(number / 9 - 1, number / 3 % 3 - 1, number % 3 - 1);
-        out.push_back((number % 2 == 0 ? 1.0 : -1.0) * glm::normalize(along));
-    }
+    std::vector<glm::dvec3> out = cube_directions();
+    out.resize(out.size() / 2);
+    for (size_t i = 1; i < out.size(); i += 2)
+        out[i] = -1.0 * out[i];
     return out;
 }
 
@@ -49,14 +48,10 @@ struct PictureView {
     glm::dvec3 sun{0.0};
 
     PictureView(const glm::dvec3& towards, size_t number) {
-        const glm::dvec3 other =
-            std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-        const glm::dvec3 right = glm::normalize(glm::cross(other, towards));
-        const glm::dvec3 up = glm::cross(towards, right);
-        frame = glm::dmat3(right, up, towards);
+        frame = picture_frame(towards);
         // The suns stand around the views by the golden angle: each view has its own.
         const double turn = kGoldenAngle * static_cast<double>(number);
-        sun = glm::normalize(towards + std::cos(turn) * right + std::sin(turn) * up);
+        sun = glm::normalize(towards + std::cos(turn) * frame[0] + std::sin(turn) * frame[1]);
     }
 };
 

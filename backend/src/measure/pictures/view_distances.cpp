@@ -2,6 +2,7 @@
 #include "measure/pictures/view_distances.h"
 
 #include "base/parallel.h"
+#include "measure/pictures/cube_views.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,16 +22,6 @@ constexpr double kMostFar = 0.001;
 /// Taste: a larger value wastes more rays around the object.
 constexpr double kFrameMargin = 1.1;
 
-std::vector<glm::dvec3> all_directions() {
-    std::vector<glm::dvec3> out;
-    for (int number = 0; number < 27; ++number) {
-        const glm::dvec3 along(number / 9 - 1, number / 3 % 3 - 1, number % 3 - 1);
-        if (along != glm::dvec3(0.0))
-            out.push_back(glm::normalize(along));
-    }
-    return out;
-}
-
 /// The rectangle around a mesh in a picture.
 struct PictureFrame {
     glm::dvec3 right, up;
@@ -38,10 +29,9 @@ struct PictureFrame {
     glm::dvec3 high{-std::numeric_limits<double>::infinity()};
 
     PictureFrame(const std::vector<glm::dvec3>& points, const glm::dvec3& towards) {
-        const glm::dvec3 other =
-            std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-        right = glm::normalize(glm::cross(other, towards));
-        up = glm::cross(towards, right);
+        const glm::dmat3 frame = picture_frame(towards);
+        right = frame[0];
+        up = frame[1];
         for (const glm::dvec3& point : points) {
             const glm::dvec3 at(glm::dot(point, right), glm::dot(point, up),
                                 glm::dot(point, towards));
@@ -82,7 +72,7 @@ double most_of(std::vector<double>& far, size_t pixels) {
 }  // namespace
 
 ViewDistances::ViewDistances(const Mesh& finest, const ray::MeshScene& scene)
-    : finest_(finest), scene_(scene), directions_(all_directions()) {}
+    : finest_(finest), scene_(scene), directions_(cube_directions()) {}
 
 void ViewDistances::aim() const {
     rays_.clear();

@@ -81,7 +81,7 @@ private:
 };
 
 /// Sees `some` of the triangles by their rays from `first` to `end`, and marks those it sees.
-template <typename RayNumber>
+using RayNumber = std::function<int(uint32_t triangle)>;
 void see(const LeavingRays& rays, std::span<const uint32_t> some, const RayNumber& first,
          const RayNumber& end, std::vector<uint8_t>& seen, const Job& job) {
     parallel_for((some.size() + kBlock - 1) / kBlock, [&](size_t block) {
@@ -115,7 +115,6 @@ std::vector<uint8_t> seen_from_outside(const Mesh& mesh, const ray::MeshScene& s
     std::iota(dark.begin(), dark.end(), 0u);
     // Half of the rays come first. What they do not find, with nothing found at its corners, lies
     // in the dark with everything around it. What is found beside is light for its own neighbors.
-    using RayNumber = std::function<int(uint32_t)>;
     const RayNumber none = [](uint32_t) { return 0; };
     const RayNumber half = [&](uint32_t i) { return (rays.of(i, rays_per_triangle) + 1) / 2; };
     const RayNumber all = [&](uint32_t i) {

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cube views: the directions from which pictures of a thing are taken, and the frames of these.
+#pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include <cmath>
+#include <vector>
+
+namespace lodestone::measure {
+
+/// The unit directions from a cube's middle to its 26 faces, edges and corners. The opposite of
+/// number i is number 25 - i.
+inline std::vector<glm::dvec3> cube_directions() {
+    std::vector<glm::dvec3> out;
+    for (int number = 0; number < 27; ++number) {
+        const glm::dvec3 along(number / 9 - 1, number / 3 % 3 - 1, number % 3 - 1);
+        if (along != glm::dvec3(0.0))
+            out.push_back(glm::normalize(along));
+    }
+    return out;
+}
+
+/// The frame of a picture that is seen from the unit direction `towards`. Its columns: right, up,
+/// towards the viewer.
+inline glm::dmat3 picture_frame(const glm::dvec3& towards) {
+    const glm::dvec3 other = std::abs(towards.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 right = glm::normalize(glm::cross(other, towards));
+    return {right, glm::cross(towards, right), towards};
+}
+
+}  // namespace lodestone::measure
