@@ -2,7 +2,7 @@
 #include "simplify/fit/corner_normals.h"
 
 #include "base/parallel.h"
-#include "simplify/fit/fit_samples.h"
+#include "simplify/fit/wedge_normals.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -19,7 +19,7 @@ namespace {
 
 /// The original's triangles that are sampled, for each triangle of the mesh.
 /// Taste: more tell the shading of small triangles better, in more time.
-constexpr double kSourcesEach = 4;
+constexpr double kSourcesEach = 16;
 // The largest share of them.
 // Taste: a larger one takes more time with levels near the original.
 constexpr double kMostSources = 0.5;
@@ -35,25 +35,15 @@ constexpr size_t kSamplesToShade = 4;
 constexpr float kLeastOff = 0.01f;
 // Taste: a larger part shades more triangles anew for little.
 constexpr float kLeft = 0.25f;
-/// The cosines of corners at one vertex that share a normal, and of wedges that always did.
+/// The cosine of corners at one vertex that share a normal.
 /// Taste: 0.9 is 26 degrees; a larger cosine keeps more creases and more normals.
 constexpr float kAlike = 0.9f;
-// Law: wedges agree within 1 degree (see make_wedges), and its cosine is 0.99985.
-constexpr float kOneWedge = 0.99985f;
 // Triangles that one thread computes at a time.
 // Taste: larger chunks share the work less evenly.
 constexpr size_t kTrianglesAtOnce = 2048;
 
 bool shaded(const glm::vec3& normal) {
     return normal != glm::vec3(0.0f);
-}
-
-/// The original's normal at a sample; zero where it has none.
-glm::vec3 normal_at(const Mesh& source, const FitSample& sample) {
-    const Triangle& t = source.triangles[sample.source];
-    const glm::vec3 sum = source.normals[t.x] + source.normals[t.y] + source.normals[t.z];
-    const float length = glm::length(sum);
-    return length > 1e-6f && std::isfinite(length) ? sum / length : glm::vec3(0.0f);
 }
 
 /// The linear function over one triangle that is nearest to the normals of its samples. Their mean
@@ -185,6 +175,7 @@ std::vector<glm::vec3> corner_normals(CollapseMesh& mesh, const Mesh& source,
     FitSamples samples;
     sample_surface(places, adjacency, std::max(static_cast<size_t>(want), kLeastSources), 0, job,
                    samples);
+    fit_wedge_normals(mesh, source, adjacency, samples);
     const size_t count = mesh.triangles.size();
     const SamplesByTriangle by_triangle(places, samples);
     std::vector<glm::vec3> normals(3 * count, glm::vec3(0.0f));

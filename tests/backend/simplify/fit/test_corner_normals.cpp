@@ -73,3 +73,46 @@ TEST(CornerNormals, RoundThingsAreHardlySplit) {
         EXPECT_LE(ring.positions.size(), 0.65 * static_cast<double>(ring.triangles.size()));
     }
 }
+
+TEST(CornerNormals, CoarseLevelsOfLumpsAreShadedLikeThem) {
+    // Lumps that a level of 300 triangles cannot follow: its corners had the normals of points.
+    Mesh lumpy = shapes::sphere(1, 5);
+    for (glm::vec3& p : lumpy.positions)
+        p *= 1 + 0.15f * std::sin(5 * p.x) * std::sin(4 * p.y + 1) * std::sin(6 * p.z + 2);
+    const Mesh original = smooth(lumpy);
+    const Mesh level = simplify::simplify_mesh(original, 300);
+    double off = 0;
+    double area = 0;
+    for (size_t i = 0; i < level.triangles.size(); ++i) {
+        const Triangle& t = level.triangles[i];
+        const glm::vec3 middle =
+            (level.positions[t.x] + level.positions[t.y] + level.positions[t.z]) / 3.0f;
+        size_t nearest = 0;
+        for (size_t v = 0; v < original.positions.size(); ++v) {
+            if (glm::distance(original.positions[v], middle) <
+                glm::distance(original.positions[nearest], middle))
+                nearest = v;
+        }
+        const glm::vec3 shown =
+            glm::normalize(level.normals[t.x] + level.normals[t.y] + level.normals[t.z]);
+        const double weight = glm::length(area_vector(level, i));
+        off += weight * glm::distance(shown, original.normals[nearest]);
+        area += weight;
+    }
+    EXPECT_LT(off / area, 0.16);  // .178 with the normals of points
+}
+
+TEST(CornerNormals, ARoughPlainIsLitByItsMeanNormal) {
+    // Each vertex of a coarse level had the normal of one point, up to 20 degrees off.
+    Mesh rough = shapes::grid(200);
+    uint32_t bits = 1;
+    for (glm::vec3& p : rough.positions) {
+        bits = 1664525 * bits + 1013904223;
+        p.z = 0.001f * static_cast<float>(bits >> 16) / 65536.0f;
+    }
+    const Mesh level = simplify::simplify_mesh(smooth(rough), 60);
+    double up = 1;
+    for (const glm::vec3& normal : level.normals)
+        up = std::min(up, double{normal.z});
+    EXPECT_GT(up, 0.997);  // 4.5 degrees
+}
