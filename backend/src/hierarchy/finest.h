@@ -6,6 +6,7 @@
 #include "measure/deviation/distinct_looks.h"
 #include "measure/deviation/surface_deviation.h"
 #include "measure/pictures/patch_light.h"
+#include "measure/pictures/patch_shading.h"
 #include "measure/pictures/view_distances.h"
 #include "measure/visible/visible_attributes.h"
 
@@ -49,6 +50,7 @@ struct MeasuredFinest {
     bool glows = false;                                 // some of it is a lamp
     bool layered = false;                               // it is flat and lies in thin layers
     std::optional<measure::LightPatches> patches = {};  // none of environment
+    std::unique_ptr<const measure::ShadedPatches> shading = {};  // none of a group
     std::unique_ptr<const measure::ViewDistances> views = {};
 
     /// Whether something solid may stand for it.

@@ -19,6 +19,15 @@ constexpr double kMostAreaChange = 0.25;
 // The share of the size of patches that look different which is their error.
 // Taste: a larger value keeps finer levels where colors differ.
 constexpr double kPatches = 0.5;
+// The share of the size of patches that are shaded otherwise which is their error: patches of four
+// pixels are to be shaded alike.
+// Taste: a larger value shades smaller patches alike, with finer levels.
+constexpr double kShading = 0.25;
+
+void raise_to(StandInCandidate& candidate, double seen) {
+    candidate.error = std::max(candidate.error, seen);
+    candidate.max_error = std::max(candidate.max_error, seen);
+}
 
 bool shows_as_much_in(const Mesh& level, const ray::MeshScene& scene, const MeasuredFinest& finest,
                       const Job& job) {
@@ -55,14 +64,18 @@ bool prove(StandInCandidate& candidate, const MeasuredFinest& finest, double use
         return false;
     measure_to_the_end(candidate, finest, job);
     count_views(candidate, scene, finest, job);
+    const double child_error = finest.options.child_error;
+    if (is_mesh && finest.shading) {
+        const double least = (candidate.error - child_error) / kShading;
+        raise_to(candidate,
+                 kShading * finest.shading->largest_unlike_patch(mesh, scene, least) + child_error);
+    }
     if (!finest.patches)
         return true;
-    const double own = candidate.error - finest.options.child_error;
+    const double own = candidate.error - child_error;
     const double unlike = finest.patches->largest_unlike_patch(
         mesh, scene, *skin, is_matched(finest, used_to), own / kPatches);
-    const double seen = kPatches * unlike + finest.options.child_error;
-    candidate.error = std::max(candidate.error, seen);
-    candidate.max_error = std::max(candidate.max_error, seen);
+    raise_to(candidate, kPatches * unlike + child_error);
     return true;
 }
 

@@ -2,6 +2,7 @@
 #include "measure/pictures/patch_light.h"
 
 #include "measure/pictures/glass_rays.h"
+#include "measure/pictures/patch_grid.h"
 
 #include <glm/common.hpp>
 
@@ -16,10 +17,6 @@ namespace {
 // Taste: pictures (kSky in picture_agreement.cpp) have the same; a larger value shows less of the
 // shape.
 constexpr double kAmbient = 0.25;
-// The smallest patches are the bound's width halved so many times.
-// Taste: a larger value tells finer differences, of which single rays know little.
-constexpr int kHalvings = 10;
-
 // A surface shows one color when the root of the mean square of its colors' differences, over the
 // mean color, is less than this.
 // Taste: a larger value paints fewer boxes with several colors.
@@ -50,29 +47,6 @@ glm::dvec3 sun_beside(const glm::dvec3& towards, size_t number) {
     const glm::dvec3 right = glm::normalize(glm::cross(other, towards));
     const glm::dvec3 up = glm::cross(towards, right);
     return glm::normalize(towards + std::cos(turn) * right + std::abs(std::sin(turn)) * up);
-}
-
-/// The number of the side, of six, that something is seen from.
-uint64_t side_of(const glm::dvec3& towards) {
-    int most = 0;
-    for (int axis = 1; axis < 3; ++axis)
-        most = std::abs(towards[axis]) > std::abs(towards[most]) ? axis : most;
-    return 2 * static_cast<uint64_t>(most) + (towards[most] < 0 ? 1 : 0);
-}
-
-/// The patch of a point: the side, then for each halving three bits of the place (0...1 along each
-/// axis).
-uint64_t patch_of(const glm::dvec3& towards, const glm::dvec3& place) {
-    // Law: the cells along an axis after so many halvings.
-    constexpr int kCells = 1 << kHalvings;
-    const glm::ivec3 cell(
-        glm::clamp(place * double{kCells}, glm::dvec3(0.0), glm::dvec3(kCells - 1)));
-    uint64_t patch = side_of(towards);
-    for (int bit = kHalvings; bit-- > 0;) {
-        for (int axis = 0; axis < 3; ++axis)
-            patch = patch << 1u | (static_cast<uint32_t>(cell[axis]) >> bit & 1u);
-    }
-    return patch;
 }
 
 }  // namespace
@@ -111,36 +85,10 @@ LightPatches::LightPatches(const Mesh& finest, const VisibleSampler& sampler,
     }
     colored_ = off > kOneColor * kOneColor * glm::dot(color, color);
     for (PatchSample& seen : seen_)
-        seen.patch = patch_of(seen.towards, (seen.point - low) / (2 * radius_));
+        seen.patch = PatchGrid::patch_of(seen.towards, (seen.point - low) / (2 * radius_));
     std::stable_sort(seen_.begin(), seen_.end(),
                      [](const PatchSample& a, const PatchSample& b) { return a.patch < b.patch; });
     mean_ /= static_cast<double>(std::max<size_t>(seen_.size(), 1));
-}
-
-LightPatches::PatchDifference LightPatches::difference(const std::vector<glm::dvec3>& off,
-                                                       int halvings) const {
-    const int shift = 3 * (kHalvings - halvings);
-    double squares = 0;
-    double count = 0;
-    for (size_t begin = 0, end = 0; begin < seen_.size(); begin = end) {
-        glm::dvec3 sum(0.0);
-        double alone = 0;
-        for (end = begin;
-             end < seen_.size() && seen_[end].patch >> shift == seen_[begin].patch >> shift;
-             ++end) {
-            sum += off[end];
-            alone += glm::dot(off[end], off[end]);
-        }
-        const auto rays = static_cast<double>(end - begin);
-        if (rays < 2)
-            continue;
-        squares += (glm::dot(sum, sum) - alone) / (rays - 1);
-        count += rays;
-    }
-    if (!(count > 0))
-        return {};
-    return {std::sqrt(std::max(0.0, squares / count)) / glm::length(mean_),
-            count / static_cast<double>(seen_.size())};
 }
 
 double LightPatches::largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
@@ -177,13 +125,18 @@ double LightPatches::largest_unlike_patch(const Mesh& stand_in, const ray::MeshS
     }
     for (size_t i = 0; i < seen_.size(); ++i)
         off[i] = brighter * off[i] - seen_[i].light;
+    std::vector<uint64_t> patches;
+    for (const PatchSample& seen : seen_)
+        patches.push_back(seen.patch);
+    const double most = kMostOff * glm::length(mean_);
     double side = 2 * radius_;
-    for (int halvings = 0; halvings <= kHalvings && side > least; ++halvings, side /= 2) {
-        const PatchDifference found = difference(off, halvings);
+    for (int halvings = 0; halvings <= PatchGrid::kHalvings && side > least;
+         ++halvings, side /= 2) {
+        const PatchGrid::PatchDifference found = PatchGrid::difference(patches, off, halvings);
         if (found.known < kLeastKnown)
             break;
-        if (found.off > kMostOff)
-            return side * (halvings == 0 ? std::min(found.off / kMostOff, kMostFarther) : 1);
+        if (found.off > most)
+            return side * (halvings == 0 ? std::min(found.off / most, kMostFarther) : 1);
     }
     return 0;
 }

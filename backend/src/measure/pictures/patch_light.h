@@ -11,9 +11,7 @@ namespace lodestone::measure {
 /// not tell what lies a little before or behind something else, which way it faces, nor how much of
 /// it there is: pages that come through a cover, bricks gone from before their mortar. The same
 /// rays meet the stand-in, and their light (of a lamp beside the eye, on the surface there) is
-/// compared in the mean over patches. A patch is what lies in one cube of space and is seen from
-/// one of six sides. Single rays differ anyway: the noise that comes from their small number is
-/// left out of the mean square (products of two rays' differences have nothing of it).
+/// compared in the mean over patches of PatchGrid.
 class LightPatches {
 public:
     /// Patches do not look alike when the root of the mean square of their differences, over the
@@ -45,19 +43,13 @@ public:
 
 private:
     struct PatchSample {
-        uint64_t patch;  // the smallest patch; its first bits name the larger ones
+        uint64_t patch;
         glm::dvec3 point;
         glm::dvec3 towards;            // unit direction to the eye
         glm::dvec3 normal;             // unit, on the eye's side
         ray::SurfaceAppearance shown;  // the surface's colors
         glm::dvec3 light;
     };
-    struct PatchDifference {
-        double off = 0;    // root of the mean square of differences, over the mean light
-        double known = 0;  // share of the rays that are not alone in their patch
-    };
-    PatchDifference difference(const std::vector<glm::dvec3>& off, int halvings) const;
-
     std::vector<PatchSample> seen_;  // sorted by patch
     glm::dvec3 mean_{0.0};           // the mean light
     bool colored_ = false;           // true: the finest shows more than one color

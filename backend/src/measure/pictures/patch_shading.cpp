@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "measure/pictures/patch_shading.h"
+
+#include "measure/pictures/glass_rays.h"
+#include "measure/pictures/patch_grid.h"
+
+#include <glm/common.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace lodestone::measure {
+namespace {
+
+// The samples kept of simple meshes; finer ones have one for each triangle.
+// Taste: more resolve smaller patches, for a ray each and stand-in.
+constexpr size_t kFewest = 2048;
+// The samples kept at most.
+// Taste: more resolve smaller patches of fine meshes, for a ray each and stand-in.
+constexpr size_t kMost = 32768;
+// The share of the samples that must not be alone in their patch.
+// Taste: a larger value ends the search at larger patches, a smaller one trusts few rays.
+constexpr double kLeastKnown = 0.5;
+// The mean square cosine between normals of one patch, below which it is foliage.
+// Taste: anything is 1/3, slopes of 30 degrees are 0.75; a larger value compares fewer rough ones.
+constexpr double kLeastAlike = 0.6;
+
+/// A cube, and the normal of a sample there.
+using CubeNormal = std::pair<uint64_t, glm::dvec3>;
+
+/// The mean square cosine between two normals of one cube, of the smallest cubes that have two;
+/// which way they face along it does not matter.
+double likeness(std::vector<CubeNormal>& normals) {
+    std::stable_sort(normals.begin(), normals.end(),
+                     [](const CubeNormal& a, const CubeNormal& b) { return a.first < b.first; });
+    for (int shift = 0; shift <= 3 * PatchGrid::kHalvings; shift += 3) {
+        double squares = 0;
+        double count = 0;
+        for (size_t begin = 0, end = 0; begin < normals.size(); begin = end) {
+            glm::dmat3 sum(0.0);
+            for (end = begin; end < normals.size() &&
+                              normals[end].first >> shift == normals[begin].first >> shift;
+                 ++end)
+                sum += glm::outerProduct(normals[end].second, normals[end].second);
+            const auto samples = static_cast<double>(end - begin);
+            if (samples < 2)
+                continue;
+            double square = 0;
+            for (int axis = 0; axis < 3; ++axis)
+                square += glm::dot(sum[axis], sum[axis]);
+            squares += (square - samples) / (samples - 1);
+            count += samples;
+        }
+        if (count >= kLeastKnown * static_cast<double>(normals.size()))
+            return squares / std::max(count, 1.0);
+    }
+    return 1;
+}
+
+}  // namespace
+
+ShadedPatches::ShadedPatches(const Mesh& finest, const VisibleSampler& sampler,
+                             std::span<const CastPoints> cast, double visible_area, uint64_t seed)
+    : radius_(radius_of(finest)), visible_area_(visible_area) {
+    const size_t wanted = std::clamp(finest.triangles.size(), kFewest, kMost);
+    const SobolPoints numbers(seed);
+    const ray::FlushDenormals burst;
+    glm::dvec3 low(std::numeric_limits<double>::infinity());
+    const size_t most_rays = sampler.empty() ? 0 : std::max(cast.size(), 2 * wanted);
+    for (size_t i = 0; i < most_rays && seen_.size() < wanted; ++i) {
+        CastPoints found;
+        if (i < cast.size())
+            found = cast[i];
+        else if (wanted > kFewest)
+            found.count = sampler.cast(static_cast<uint32_t>(i), found.points);
+        else
+            break;
+        for (int k = 0; k < found.count; ++k) {
+            const VisiblePoint& at = found.points[static_cast<size_t>(k)];
+            glm::dvec3 towards = at.seen_from;
+            if (sampler.from_surface()) {
+                const std::array<double, 4> u = numbers.point(static_cast<uint32_t>(i));
+                towards = cosine_direction(at.seen_from, u[2], u[3]);
+            }
+            const ray::RayHit hit{true, at.triangle, at.u, at.v, 0, at.point};
+            seen_.push_back({0, at.point, towards, normal_at(finest, hit, towards)});
+            low = glm::min(low, at.point);
+        }
+    }
+    std::vector<CubeNormal> normals;
+    for (ShadedSample& seen : seen_) {
+        seen.cube = PatchGrid::cube_of((seen.point - low) / (2 * radius_));
+        normals.emplace_back(seen.cube, seen.normal);
+    }
+    is_surface_ = likeness(normals) > kLeastAlike;
+}
+
+double ShadedPatches::largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
+                                           double least) const {
+    // The samples of a patch of the least size, in the mean, on a ball.
+    // Taste: more tell smaller differences, for a ray each.
+    constexpr double kSamplesEach = 6;
+    // The share of a patch's square that counts as all of it: surfaces cut cubes anyhow.
+    // Taste: a larger value forgives how thin things are shaded, and what ends in a cube.
+    constexpr double kLeastCovered = 0.25;
+    // Chance makes patches differ by more than the least with one in 40.
+    // Law: two standard deviations.
+    constexpr double kSure = 2;
+    if (!is_surface_ || !(2 * radius_ > least) || !(least > 0) || !(visible_area_ > 0))
+        return 0;
+    const double width = 2 * radius_ / least;
+    const double wanted = kSamplesEach * std::numbers::pi * width * width;
+    const size_t most = wanted < static_cast<double>(seen_.size())
+                            ? std::max(kFewest / 2, static_cast<size_t>(wanted))
+                            : seen_.size();
+    const ray::FlushDenormals burst;
+    struct SeenPatch {
+        uint64_t patch;
+        glm::dvec3 normal;  // of the stand-in
+        glm::dvec3 off;
+    };
+    std::vector<SeenPatch> found;
+    for (const ShadedSample& seen : std::span(seen_).first(most)) {
+        const ray::RayHit hit =
+            scene.first_hit(seen.point + 4 * radius_ * seen.towards, -seen.towards);
+        if (!hit.hit || glm::distance(hit.point, seen.point) > least)
+            continue;
+        const glm::dvec3 normal = normal_at(stand_in, hit, seen.towards);
+        found.push_back({PatchGrid::on_side(normal, seen.cube), normal, seen.normal - normal});
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const SeenPatch& a, const SeenPatch& b) { return a.patch < b.patch; });
+    std::vector<uint64_t> patches;
+    std::vector<glm::dvec3> normals;
+    std::vector<glm::dvec3> off;
+    for (const SeenPatch& one : found) {
+        patches.push_back(one.patch);
+        normals.push_back(one.normal);
+        off.push_back(one.off);
+    }
+    const double per_area = kLeastCovered * static_cast<double>(most) / visible_area_;
+    // Between two sizes differences follow a power of the size, nearly.
+    double side = 2 * radius_;
+    double larger = 0;
+    for (int halvings = 0; halvings <= PatchGrid::kHalvings && side > least;
+         ++halvings, side /= 2) {
+        const PatchGrid::PatchDifference turned =
+            PatchGrid::difference(patches, off, halvings, side * side * per_area, normals);
+        if (turned.known < kLeastKnown)
+            break;
+        const double sure =
+            std::sqrt(std::max(0.0, turned.off * turned.off - kSure * turned.noise));
+        if (sure > kMostTurned) {
+            const double part =
+                larger > 0 ? std::log(sure / kMostTurned) / std::log(sure / larger) : 0;
+            return side * std::exp2(part);
+        }
+        larger = sure;
+    }
+    return 0;
+}
+
+}  // namespace lodestone::measure

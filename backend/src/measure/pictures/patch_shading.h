@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// ShadedPatches: a test whether pieces of a stand-in are shaded like the finest.
+#pragma once
+
+#include "measure/visible/visible_sampler.h"
+
+#include <span>
+#include <vector>
+
+namespace lodestone::measure {
+
+/// The shading normals that rays have seen of the finest, to be looked at again on stand-ins. The
+/// light on a matte surface is its normal times the lamp's direction. So where the mean normals of
+/// a patch agree, so does its light under any lamp that all of it faces, a grazing one, too; a
+/// lamp beside the eye (LightPatches) hardly tells a gully from a plain. A patch is one of
+/// PatchGrid, on the side that the stand-in faces there: which side a rough surface faces or is
+/// seen from is chance, and would favor its slopes to that side. What is turned counts; that slopes
+/// to all sides show less light than a plain is told by LightPatches, and made up for.
+class ShadedPatches {
+public:
+    /// Patches are shaded alike when the root of the mean square of how far their mean normals are
+    /// turned (the part of the difference across the stand-in's, 0...1) is not larger than this.
+    /// Taste: so much of a grazing lamp's light is off; 0.06 is 3.4 degrees.
+    static constexpr double kMostTurned = 0.06;
+
+    /// Takes the points that the sampler's rays 0, 1, ... found (`cast`), and casts more of a finer
+    /// mesh. `seed` is the sampler's, `visible_area` (m^2) the mesh's. Keeps no reference.
+    ShadedPatches(const Mesh& finest, const VisibleSampler& sampler,
+                  std::span<const CastPoints> cast, double visible_area, uint64_t seed);
+
+    /// The side in metres of the largest patches that are not shaded alike, at most the width of
+    /// the bound; 0 where only patches of `least` metres or less are not, or what is seen lies
+    /// farther off than that. Thin things count by how much of a patch they cover. 0 of foliage,
+    /// too, where neighbors face anywhere: it has no surface to be shaded. `scene` has `stand_in`.
+    /// May be called from any thread.
+    double largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
+                                double least) const;
+
+private:
+    struct ShadedSample {
+        uint64_t cube;  // of PatchGrid
+        glm::dvec3 point;
+        glm::dvec3 towards;  // unit direction to the eye
+        glm::dvec3 normal;   // unit, on the eye's side
+    };
+    std::vector<ShadedSample> seen_;  // in the order they were cast
+    double radius_ = 0;               // metres: the radius of the bound
+    double visible_area_ = 0;         // m^2
+    bool is_surface_ = false;         // neighbors face about the same way
+};
+
+}  // namespace lodestone::measure
