@@ -35,7 +35,7 @@ THIRD_PARTY = (
         r"(lib)?png|jpeglib|jerror|turbojpeg|OpenEXR/|Imf|Imath|Iex|IlmThread|half",
         r"backend/src/image/",
     ),
-    (r"tiny_?gltf|stb", r"backend/src/format/"),
+    (r"tiny_?gltf|stb|meshoptimizer", r"backend/src/format/"),
     (r"(tbb|oneapi)/", r"backend/src/base/parallel\.cpp$"),
     (r"OpenMesh/", r"backend/src/geometry/repair"),
     (r"curl/", r"backend/src/segment/fetch"),

@@ -67,6 +67,7 @@ class TheCheck(unittest.TestCase):
             ("image", "OpenEXR/ImfRgbaFile.h"),
             ("image", "ImfRgbaFile.h"),
             ("format", "tiny_gltf.h"),
+            ("format", "meshoptimizer.h"),
             ("geometry", "OpenMesh/Core/IO/MeshIO.hh"),
         ):
             with self.subTest(header):

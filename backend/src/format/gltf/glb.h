@@ -13,11 +13,12 @@ namespace lodestone::format {
 
 /// The default scene becomes the root "gltf:scene"; a node with children a group ("gltf:node:7"), a
 /// mesh an object ("gltf:mesh:3", shared by all its nodes), a node with a mesh a placement. Y up is
-/// turned to Z up. Materials keep their textures, as far as Material has words for them. Cameras
-/// and lights (KHR_lights_punctual) are read; skins and morphs are not. Buffers and pictures beside
-/// the file are read from below `folder` (empty: none). What is broken inside a readable file is
-/// left out with a problem. Throws Error(BadFile) naming `name`, also for extensions the file
-/// requires and we do not know.
+/// turned to Z up, EXT_meshopt_compression is unpacked. Materials keep their textures, as far as
+/// Material has words for them. Cameras and lights (KHR_lights_punctual) are read; skins and morphs
+/// are not. Buffers and pictures beside the file are read from below `folder` (empty: none). What
+/// is broken inside a readable file is left out with a problem. Throws Error(BadFile) naming
+/// `name`, also for views that do not unpack and for extensions the file requires and we do not
+/// know.
 Model read_glb(std::string_view bytes, const std::filesystem::path& folder, const std::string& name,
                Problems& problems);
 

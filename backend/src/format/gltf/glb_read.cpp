@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "format/gltf/glb.h"
 #include "format/gltf/gltf_accessor.h"
+#include "format/gltf/gltf_extensions.h"
 #include "format/gltf/gltf_file.h"
 #include "format/gltf/gltf_frame.h"
 #include "format/gltf/gltf_material.h"
 #include "format/gltf/gltf_mesh.h"
+#include "format/gltf/gltf_meshopt.h"
 #include "format/gltf/gltf_view.h"
 
 #include <glm/gtc/quaternion.hpp>
@@ -60,7 +62,6 @@ public:
     }
 
     Model read() {
-        check_extensions();
         const std::vector<int> roots = scene_nodes();
         const std::vector<int> order = top_down(roots);
         model_.materials = read_materials(from_, pictures_, name_, problems_);
@@ -81,19 +82,6 @@ public:
 private:
     // Law: an index that no object has, as kNoObject is taken.
     static constexpr ObjectIndex kUnread = kNoObject - 1;
-
-    void check_extensions() const {
-        constexpr std::array<std::string_view, 4> kHarmless{
-            "KHR_mesh_quantization", "KHR_texture_transform", "KHR_lights_punctual", "KHR_xmp"};
-        for (const std::string& extension : from_.extensionsRequired) {
-            const bool known =
-                std::find(kHarmless.begin(), kHarmless.end(), extension) != kHarmless.end() ||
-                extension.starts_with("KHR_materials_");
-            if (!known)
-                fail(Status::BadFile, "'", name_, "' requires ", extension,
-                     ", which is not read; export it without");
-        }
-    }
 
     std::string scene_name() const {
         const size_t scene = from_.defaultScene < 0 ? 0 : static_cast<size_t>(from_.defaultScene);
@@ -270,6 +258,8 @@ Model read_glb(std::string_view bytes, const std::filesystem::path& folder, cons
                Problems& problems) {
     tinygltf::Model from;
     load_gltf(from, bytes, folder, name);
+    check_extensions(from, name);
+    unpack_views(from, name);
     return GlbReader(from, folder, name, problems, bytes.size()).read();
 }
 

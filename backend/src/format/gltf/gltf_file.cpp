@@ -52,16 +52,21 @@ std::string_view glb_json(std::string_view bytes, const std::string& name) {
     return bytes.substr(20, json);
 }
 
-/// Walks through the JSON text once: depth, buffers without a uri (only one can be the chunk), and
-/// the files that are pictures.
+/// Walks through the JSON text once: depth, buffers without a uri (only one can be the chunk),
+/// buffers that stand in for what EXT_meshopt_compression packs, and the files that are pictures.
 class GltfScan : public nlohmann::json_sax<nlohmann::json> {
 public:
     std::string complaint;
     std::set<std::string> buffers;   // files
     std::set<std::string> pictures;  // likewise
+    std::vector<size_t> fallbacks;   // buffers, in their order
 
     bool null() override { return true; }
-    bool boolean(bool) override { return true; }
+    bool boolean(bool value) override {
+        if (depth_ == 5 && in_buffers_ && in_extensions_ && in_meshopt_ && key_is_fallback_)
+            fallback_ = value;
+        return true;
+    }
     bool number_integer(number_integer_t) override { return true; }
     bool number_unsigned(number_unsigned_t) override { return true; }
     bool number_float(number_float_t, const string_t&) override { return true; }
@@ -78,22 +83,34 @@ public:
         if (depth_ == 1) {
             in_buffers_ = name == "buffers";
             in_images_ = name == "images";
+            if (in_buffers_) {  // the last of equal keys counts
+                buffer_ = 0;
+                fallbacks.clear();
+            }
         }
+        if (depth_ == 3)
+            in_extensions_ = name == "extensions";
+        if (depth_ == 4)
+            in_meshopt_ = name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression";
         key_is_uri_ = name == "uri";
+        key_is_fallback_ = name == "fallback";
         return true;
     }
     bool start_object(std::size_t) override {
         if (depth_ == 2)
-            has_uri_ = false;
+            has_uri_ = fallback_ = false;
         return enter();
     }
     bool start_array(std::size_t) override { return enter(); }
     bool end_object() override {
-        if (depth_-- == 3 && in_buffers_ && !has_uri_ && ++without_uri_ > 1) {
+        if (depth_-- != 3 || !in_buffers_)
+            return true;
+        if (fallback_)
+            fallbacks.push_back(buffer_);
+        else if (!has_uri_ && ++without_uri_ > 1)
             complaint = "several buffers claim the binary chunk";
-            return false;
-        }
-        return true;
+        ++buffer_;
+        return complaint.empty();
     }
     bool end_array() override {
         --depth_;
@@ -117,10 +134,47 @@ private:
     int depth_ = 0;
     bool in_buffers_ = false;
     bool in_images_ = false;
+    bool in_extensions_ = false;
+    bool in_meshopt_ = false;
     bool key_is_uri_ = false;
+    bool key_is_fallback_ = false;
     bool has_uri_ = false;
+    bool fallback_ = false;
     int without_uri_ = 0;
+    size_t buffer_ = 0;
 };
+
+/// The JSON text with a byte in each of some buffers: tinygltf wants data in all of them, and what
+/// is packed by EXT_meshopt_compression needs no fallback.
+std::string with_a_byte_in(const std::vector<size_t>& buffers, std::string_view json) {
+    nlohmann::json document = nlohmann::json::parse(json.begin(), json.end());
+    nlohmann::json& found = document["buffers"];
+    for (const size_t buffer : buffers) {
+        if (!found.is_array() || buffer >= found.size() || !found[buffer].is_object())
+            continue;
+        found[buffer]["uri"] = "data:application/octet-stream;base64,AA==";
+        found[buffer]["byteLength"] = 1;
+    }
+    return document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// A GLB with another JSON chunk.
+std::string with_json(std::string_view glb, std::string json, const std::string& name) {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const size_t rest = size_t{20} + word_at(glb, 12);
+    std::string out(glb.substr(0, 20));
+    out += json;
+    out += glb.substr(rest, word_at(glb, 8) - rest);
+    if (out.size() > std::numeric_limits<uint32_t>::max())
+        fail(Status::BadFile, "'", name, "' is larger than 4 GiB");
+    const auto put = [&out](size_t offset, size_t value) {
+        const auto word = static_cast<uint32_t>(value);
+        std::memcpy(out.data() + offset, &word, sizeof word);
+    };
+    put(8, out.size());
+    put(12, json.size());
+    return out;
+}
 
 /// The one folder that may be read, and how much.
 struct ReadableFiles {
@@ -193,6 +247,13 @@ void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesy
     GltfScan scan;
     if (!nlohmann::json::sax_parse(json.begin(), json.end(), &scan))
         fail(Status::BadFile, "'", name, "' is not read: ", scan.complaint);
+    std::string rewritten;
+    if (!scan.fallbacks.empty()) {
+        rewritten = with_a_byte_in(scan.fallbacks, json);
+        if (binary)
+            rewritten = with_json(bytes, std::move(rewritten), name);
+        bytes = rewritten;
+    }
     ReadableFiles reach;
     for (std::string file : scan.pictures) {
         if (scan.buffers.contains(file))

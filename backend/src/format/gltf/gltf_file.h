@@ -14,8 +14,9 @@ namespace lodestone::format {
 
 /// Loads GLB or glTF text, told by the first bytes. Buffers in files of their own are read only
 /// from below `folder` (empty: none); pictures in files of their own are not read, those of data:
-/// URIs stay encoded, in Image::image. References inside the model are not checked. Throws
-/// Error(BadFile) naming `name`.
+/// URIs stay encoded, in Image::image. Fallback buffers of EXT_meshopt_compression hold one byte:
+/// what they would hold is unpacked by unpack_views(). References inside the model are not checked.
+/// Throws Error(BadFile) naming `name`.
 void load_gltf(tinygltf::Model& model, std::string_view bytes, const std::filesystem::path& folder,
                const std::string& name);
 

@@ -2,6 +2,7 @@
 #include "format/gltf/gltf_mesh.h"
 
 #include "format/gltf/gltf_accessor.h"
+#include "format/gltf/gltf_extensions.h"
 
 #include <tiny_gltf.h>
 
@@ -378,6 +379,7 @@ ReadMesh foreign_mesh(const tinygltf::Model& model, const tinygltf::Mesh& from,
             continue;
         }
         try {
+            check_draco(model, primitive);
             Attributes used;
             for (const char* attribute : {"POSITION", "NORMAL", "TEXCOORD_0", kColors}) {
                 const auto found = primitive.attributes.find(attribute);
