@@ -83,10 +83,10 @@ MeasuredFinest measure_finest(const Mesh& mesh, std::span<const Material> materi
     out.layered = options.in_layers && is_flat(out.attributes);
     out.views = std::make_unique<const measure::ViewDistances>(mesh, out.scene());
     if (!options.group)
-        out.shading = std::make_unique<const measure::ShadedPatches>(
-            mesh, out.sampler(), out.cast, out.attributes.visible_area, options.seed);
+        out.shading = std::make_unique<const measure::ShadedPatches>(mesh, out.sampler(), out.cast,
+                                                                     out.attributes.visible_area);
     if (!options.environment)
-        out.patches.emplace(mesh, out.sampler(), *out.skin, out.cast, options.seed);
+        out.patches.emplace(mesh, out.sampler(), *out.skin, out.cast);
     return out;
 }
 

@@ -52,22 +52,16 @@ glm::dvec3 sun_beside(const glm::dvec3& towards, size_t number) {
 }  // namespace
 
 LightPatches::LightPatches(const Mesh& finest, const VisibleSampler& sampler,
-                           const ray::MeshSkin& skin, std::span<const CastPoints> cast,
-                           uint64_t seed)
+                           const ray::MeshSkin& skin, std::span<const CastPoints> cast)
     : radius_(radius_of(finest)) {
     // The points of the finest that are kept at most.
     // Taste: a larger value resolves smaller patches, for a ray each and stand-in.
     constexpr size_t kMost = 2048;
-    const SobolPoints numbers(seed);
     glm::dvec3 low(std::numeric_limits<double>::infinity());
     for (size_t i = 0; i < cast.size() && seen_.size() < kMost; ++i) {
         for (int k = 0; k < cast[i].count; ++k) {
             const VisiblePoint& at = cast[i].points[static_cast<size_t>(k)];
-            glm::dvec3 towards = at.seen_from;
-            if (sampler.from_surface()) {
-                const std::array<double, 4> u = numbers.point(static_cast<uint32_t>(i));
-                towards = cosine_direction(at.seen_from, u[2], u[3]);
-            }
+            const glm::dvec3 towards = sampler.towards_eye(static_cast<uint32_t>(i), at);
             const ray::RayHit hit{true, at.triangle, at.u, at.v, 0, at.point};
             seen_.push_back({0, at.point, towards, normal_at(finest, hit, towards),
                              shown_at(finest, skin, hit), light_at(finest, skin, hit, towards)});

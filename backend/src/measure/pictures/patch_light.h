@@ -19,10 +19,10 @@ public:
     /// Taste: a larger value keeps cheaper levels that are visibly darker or brighter in places.
     static constexpr double kMostOff = 0.1;
 
-    /// Takes the points that the sampler's rays 0, 1, ... found (`cast`); `seed` is the sampler's.
+    /// Takes the points that the sampler's rays 0, 1, ... found (`cast`).
     /// Keeps no reference.
     LightPatches(const Mesh& finest, const VisibleSampler& sampler, const ray::MeshSkin& skin,
-                 std::span<const CastPoints> cast, uint64_t seed);
+                 std::span<const CastPoints> cast);
 
     /// The side in metres of the largest patches that do not look alike; up to four radii of the
     /// bound where all of the stand-in looks different. 0 where only patches of `least` metres or

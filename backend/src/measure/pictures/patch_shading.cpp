@@ -64,10 +64,9 @@ double likeness(std::vector<CubeNormal>& normals) {
 }  // namespace
 
 ShadedPatches::ShadedPatches(const Mesh& finest, const VisibleSampler& sampler,
-                             std::span<const CastPoints> cast, double visible_area, uint64_t seed)
+                             std::span<const CastPoints> cast, double visible_area)
     : radius_(radius_of(finest)), visible_area_(visible_area) {
     const size_t wanted = std::clamp(finest.triangles.size(), kFewest, kMost);
-    const SobolPoints numbers(seed);
     const ray::FlushDenormals burst;
     glm::dvec3 low(std::numeric_limits<double>::infinity());
     const size_t most_rays = sampler.empty() ? 0 : std::max(cast.size(), 2 * wanted);
@@ -81,11 +80,7 @@ ShadedPatches::ShadedPatches(const Mesh& finest, const VisibleSampler& sampler,
             break;
         for (int k = 0; k < found.count; ++k) {
             const VisiblePoint& at = found.points[static_cast<size_t>(k)];
-            glm::dvec3 towards = at.seen_from;
-            if (sampler.from_surface()) {
-                const std::array<double, 4> u = numbers.point(static_cast<uint32_t>(i));
-                towards = cosine_direction(at.seen_from, u[2], u[3]);
-            }
+            const glm::dvec3 towards = sampler.towards_eye(static_cast<uint32_t>(i), at);
             const ray::RayHit hit{true, at.triangle, at.u, at.v, 0, at.point};
             seen_.push_back({0, at.point, towards, normal_at(finest, hit, towards)});
             low = glm::min(low, at.point);

@@ -24,9 +24,9 @@ public:
     static constexpr double kMostTurned = 0.06;
 
     /// Takes the points that the sampler's rays 0, 1, ... found (`cast`), and casts more of a finer
-    /// mesh. `seed` is the sampler's, `visible_area` (m^2) the mesh's. Keeps no reference.
+    /// mesh. `visible_area` (m^2) is the mesh's. Keeps no reference.
     ShadedPatches(const Mesh& finest, const VisibleSampler& sampler,
-                  std::span<const CastPoints> cast, double visible_area, uint64_t seed);
+                  std::span<const CastPoints> cast, double visible_area);
 
     /// The side in metres of the largest patches that are not shaded alike, at most the width of
     /// the bound; 0 where only patches of `least` metres or less are not, or what is seen lies

@@ -254,4 +254,11 @@ bool VisibleSampler::is_first(const VisiblePoint& point) const {
     return true;
 }
 
+glm::dvec3 VisibleSampler::towards_eye(uint32_t ray, const VisiblePoint& point) const {
+    if (!from_surface_)
+        return point.seen_from;
+    const std::array<double, 4> u = numbers_.point(ray);
+    return cosine_direction(point.seen_from, u[2], u[3]);
+}
+
 }  // namespace lodestone::measure

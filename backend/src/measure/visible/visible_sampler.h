@@ -71,6 +71,8 @@ public:
     int cast(uint32_t ray, std::array<VisiblePoint, 2>& points) const {
         return cast(numbers_.point(ray), points);
     }
+    /// The unit direction to the eye of a point that cast() found with the ray of that number.
+    glm::dvec3 towards_eye(uint32_t ray, const VisiblePoint& point) const;
     /// Whether cast() would find any point; faster.
     bool hits(const std::array<double, 4>& u) const;
     bool hits(uint32_t ray) const { return hits(numbers_.point(ray)); }

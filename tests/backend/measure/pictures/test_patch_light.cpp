@@ -29,7 +29,7 @@ measure::LightPatches patches_of(const Mesh& finest, const ray::MeshScene& scene
     std::vector<measure::CastPoints> cast(2048);
     for (uint32_t i = 0; i < cast.size(); ++i)
         cast[i].count = sampler.cast(i, cast[i].points);
-    return {finest, sampler, skin, cast, kSeed};
+    return {finest, sampler, skin, cast};
 }
 
 double unlike(const Mesh& finest, const Mesh& stand_in, bool matched) {
@@ -125,7 +125,7 @@ TEST_F(LightPatches, NothingIsUnlikeNothing) {
     const ray::SkinPtr skin = dark_and_bright();
     const ray::MeshScene scene(point, skin);
     const measure::VisibleSampler sampler(point, scene, kSeed);
-    const measure::LightPatches patches(point, sampler, *skin, {}, kSeed);
+    const measure::LightPatches patches(point, sampler, *skin, {});
     EXPECT_EQ(patches.largest_unlike_patch(sphere, ray::MeshScene(sphere, skin), *skin, false, 0),
               0);
 }

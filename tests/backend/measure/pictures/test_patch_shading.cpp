@@ -23,7 +23,7 @@ double unlike(const Mesh& finest, const Mesh& stand_in, double least = kLeast) {
     std::vector<measure::CastPoints> cast(2048);
     for (uint32_t i = 0; i < cast.size() && !sampler.empty(); ++i)
         cast[i].count = sampler.cast(i, cast[i].points);
-    const measure::ShadedPatches patches(finest, sampler, cast, surface_area(finest), kSeed);
+    const measure::ShadedPatches patches(finest, sampler, cast, surface_area(finest));
     return patches.largest_unlike_patch(stand_in, ray::MeshScene(stand_in), least);
 }
 
