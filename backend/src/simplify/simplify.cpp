@@ -3,6 +3,7 @@
 
 #include "simplify/collapse/collapse_pass.h"
 #include "simplify/fit/corner_normals.h"
+#include "simplify/fit/level_fitter.h"
 #include "simplify/fit/surface_fit.h"
 
 #include <algorithm>
@@ -13,14 +14,6 @@ namespace {
 // The fit of mode fast; see FitOptions.
 // Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
 constexpr FitOptions kFastFit{8, 0.5, 1, 1, 2, false, 0.1f, 0};
-// The fit of mode best; see FitOptions.
-// Fitted: by tests/bench/peers/bench_simplify.py, 36 pairs and 16 turned models.
-constexpr FitOptions kBestFit{20, 1, 2, 8, 5, true, 0.02f, 0.6f};
-/// The share of the triangles that mode best collapses too many and puts back where the mesh is
-/// farthest off, which is in a few spots.
-/// Fitted: by tests/bench/peers/bench_simplify.py, Hausdorff distance, CPU of nine shared models.
-constexpr double kPutBack = 0.0025;
-
 void check_arguments(const Mesh& mesh, std::span<const size_t> targets,
                      const SimplifyOptions& options) {
     check(mesh);
@@ -112,29 +105,28 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
     const size_t start = working.live;
     const size_t goal = targets.back();
     CollapseReducer reducer(working, options);
-    const bool best = options.mode == SimplifyMode::Best;
+    std::optional<LevelFitter> fitter;
+    if (options.mode == SimplifyMode::Best && others.empty())
+        fitter.emplace(mesh, working, options, !tracked && !options.keep_topology);
     for (; next < targets.size(); ++next) {
-        // Nothing is put back where every place must come from an input vertex.
-        const bool puts_back = best && !tracked && !options.keep_topology;
-        const auto spare = static_cast<size_t>((puts_back ? kPutBack / 2 : 0) *
-                                               static_cast<double>(targets[next]));
         const auto report = [&] {
             if (start > goal)
                 job.progress(static_cast<double>(start - working.live) /
                              static_cast<double>(start - goal));
         };
-        reducer.reduce(targets[next] - 2 * spare, job, report, adjacency);
+        reducer.reduce(targets[next], job, report, adjacency);
         const bool reached = working.live <= targets[next];
         // Where collapsing stops before the target, the mesh so far is the last result, unless it
         // is one already.
         if (reached || results.empty() || working.live < last) {
-            FitOptions options_of_fit = best ? kBestFit : kFastFit;
-            if (puts_back && reached)
-                options_of_fit.insert = std::min(spare, (targets[next] - working.live) / 2);
-            fit_surface(working, mesh, adjacency, options_of_fit, job);
-            if (options_of_fit.insert > 0 && !working.normals.empty())
-                adjacency.build(working);
-            results.push_back(taken(working, corner_normals(working, mesh, adjacency, job)));
+            fit_surface(working, mesh, adjacency, kFastFit, job);
+            if (fitter) {
+                Adjacency around;
+                CollapseMesh level = fitter->fit(working, adjacency, around, job);
+                results.push_back(taken(level, corner_normals(level, mesh, around, job)));
+            } else {
+                results.push_back(taken(working, corner_normals(working, mesh, adjacency, job)));
+            }
             last = working.live;
         }
         if (!reached)

@@ -29,9 +29,7 @@ constexpr size_t kWork = 40;
 /// above 0.35 ruins plates with holes, even far from the target: all flat edges go in one pass,
 /// then round ones.
 /// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
-constexpr PassLimits kFast{0.35, 2.0, 1.0 / 3, 6};
-// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
-constexpr PassLimits kBest{0.12, 1.0, 0.5, 1};
+constexpr PassLimits kPace{0.35, 2.0, 1.0 / 3, 6};
 /// From this many times the target's triangles on, a pass may take dearer edges: triangles twice as
 /// large cost eight times as much, so such costs are small beside those to come.
 /// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
@@ -112,7 +110,7 @@ std::vector<uint32_t> rounds_of(const std::vector<EdgeChunk>& chunks,
 }  // namespace
 
 CollapseReducer::CollapseReducer(CollapseMesh& mesh, const SimplifyOptions& options)
-    : mesh_(mesh), options_(options), pace_(options.mode == SimplifyMode::Best ? kBest : kFast) {}
+    : mesh_(mesh), options_(options), pace_(kPace) {}
 
 /// One batch of collapses.
 class CollapseReducer::CollapseBatch {
