@@ -26,6 +26,14 @@ class MotionFile(unittest.TestCase):
         self.assertEqual(motion_file.read(self.store), still)
         self.assertEqual([path.name for path in self.store.iterdir()], ["motion.json"])
 
+    def test_the_same_again_is_not_written_again(self):
+        still = {"still_shape": [], "still_place": ["0123456789abcdef"]}
+        motion_file.write(self.store, still)
+        before = (self.store / "motion.json").stat()
+        motion_file.write(self.store, {kind: tuple(uids) for kind, uids in still.items()})
+        after = (self.store / "motion.json").stat()
+        self.assertEqual((before.st_ino, before.st_mtime_ns), (after.st_ino, after.st_mtime_ns))
+
     def test_broken_and_foreign_ones_say_nothing(self):
         self.store.mkdir(parents=True)
         for text in ("", "[1]", '{"still_shape": "x"}', '{"still_place": [1, "..", null]}', "{"):

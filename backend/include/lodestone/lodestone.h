@@ -770,6 +770,8 @@ typedef struct lds_build_options {
                                     others stay stale. NULL: everything */
     double share; /* with a view: the most time to build, as a share of the picture's own time (both
                      estimated from counts); usual 0.2 */
+    uint64_t of_one_frame; /* 1: a store that differs in nothing but cameras, lights and the world
+                              stays as it is. For the frames of an animation */
 } lds_build_options;
 LDS_API lds_status lds_build_options_default(lds_build_options* options);
 

@@ -27,6 +27,15 @@ std::string reason(int number) {
 
 }  // namespace
 
+FileState file_state(const std::filesystem::path& path) {
+    constexpr int64_t kNanoseconds = 1'000'000'000;  // Law: of a second
+    struct stat info {};
+    if (stat(path.c_str(), &info) != 0)
+        return {};
+    return {static_cast<uint64_t>(info.st_size), static_cast<uint64_t>(info.st_ino),
+            static_cast<int64_t>(info.st_mtim.tv_sec) * kNanoseconds + info.st_mtim.tv_nsec};
+}
+
 std::string read_file(const std::filesystem::path& path, uint64_t limit) {
     // The flag is for a pipe that nobody writes to, which would hold us here; for files it means
     // nothing.

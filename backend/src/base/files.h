@@ -14,6 +14,16 @@ namespace lodestone {
 /// Reads the whole file. Throws Error(Io) with the reason, or when it is larger than `limit` bytes.
 std::string read_file(const std::filesystem::path& path, uint64_t limit = uint64_t{4} << 30u);
 
+/// The state of a file, which tells whether it has changed: one that is replaced is another file.
+struct FileState {
+    uint64_t bytes = 0;
+    uint64_t number = 0;     // of the file on its device
+    int64_t changed_ns = 0;  // when its content changed last
+    bool operator==(const FileState&) const = default;
+};
+/// All zero when there is no such file.
+FileState file_state(const std::filesystem::path& path);
+
 /// Writes to a temporary name beside `path`, then renames: a killed run leaves the old file or the
 /// new one. Throws Error(Io), and leaves nothing behind.
 void write_file(const std::filesystem::path& path, std::string_view bytes);

@@ -20,6 +20,7 @@ hierarchy::BuildSettings settings_of(const lds_model& model, const lds_build_opt
     settings.group_triangles = options.group_triangles;
     settings.seed = options.seed;
     settings.rebuild = options.rebuild != 0;
+    settings.of_one_frame = options.of_one_frame != 0;
     if (!(settings.level_ratio > 0.01 && settings.level_ratio < 0.96))
         fail(Status::InvalidArgument, "level_ratio is ", options.level_ratio,
              "; 0.01 to 0.96 expected");

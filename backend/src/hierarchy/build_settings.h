@@ -47,6 +47,9 @@ struct BuildSettings {
     /// Build only what one picture gains most from, in a share of its time. What is left keeps its
     /// finest level alone, and stays stale. Not part of the hash.
     std::optional<BuildDemand> demand;
+    /// Cameras, lights and the world need not be stored: a store that differs in nothing else stays
+    /// as it is, as in most frames of an animation. Not part of the hash.
+    bool of_one_frame = false;
     /// Finished stand-ins go to the store about this often, so that a build that is stopped or
     /// killed is gone on with, not begun again. Not part of the hash.
     double keep_every_s = 20;

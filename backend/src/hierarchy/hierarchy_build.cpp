@@ -148,7 +148,8 @@ public:
                 finish(one);
         }
         copy_lists(copies, heights, model_.objects.size() + 1);
-        report.bytes_written += kept_bytes_ + store_.write(model_, job_.part(kBuildShare, 1));
+        palette_.renumber(order);
+        report.bytes_written += kept_bytes_ + put(job_.part(kBuildShare, 1));
         for (const ObjectIndex index : order)
             report.representations += model_.objects[index].representations.size();
         report.wall_s = wall_seconds() - wall;
@@ -226,12 +227,19 @@ private:
 
     double share_done(double done) const { return kBuildShare * done / std::max(1.0, total_); }
 
-    /// Puts what is finished into the store when it is time to; the bar stays where it is.
+    /// Puts what is finished into the store.
+    uint64_t put(const Job& job) {
+        return store_.write(model_, job,
+                            settings_.of_one_frame ? segment::StoreUpdate::Objects
+                                                   : segment::StoreUpdate::Anything);
+    }
+
+    /// Does so when it is time to; the bar stays where it is.
     void keep_when_due() {
         if (wall_seconds() - kept_at_ < settings_.keep_every_s)
             return;
         const double share = share_done(done_.load());
-        kept_bytes_ += store_.write(model_, job_.part(share, share));
+        kept_bytes_ += put(job_.part(share, share));
         kept_at_ = wall_seconds();
     }
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <map>
+#include <mutex>
 #include <set>
 #include <string>
 
@@ -22,6 +23,13 @@ constexpr uint64_t kMostTilesetBytes = uint64_t{1} << 30u;
 // The characters of a file's name before its ending.
 // Law: a hash of 64 bits in hexadecimal digits.
 constexpr size_t kStem = 16;
+
+/// The tileset.json that this process has read last.
+struct RecentTileset {
+    fs::path path;
+    FileState state;
+    std::shared_ptr<const Model> model;
+};
 
 /// The triangles that viewers of tiles draw for a representation.
 Mesh drawable(const Representation& representation) {
@@ -110,13 +118,33 @@ Store::Store(const fs::path& folder) : folder_(folder) {
         folder_ = folder.parent_path();
 }
 
+fs::path Store::tileset() const {
+    return folder_ / "tileset.json";
+}
+
 bool Store::exists() const {
     std::error_code error;
-    return fs::is_regular_file(folder_ / "tileset.json", error);
+    return fs::is_regular_file(tileset(), error);
 }
 
 Model Store::read() const {
-    return model_of_tileset(read_file(folder_ / "tileset.json", kMostTilesetBytes));
+    return model_of_tileset(read_file(tileset(), kMostTilesetBytes));
+}
+
+std::shared_ptr<const Model> Store::read_shared() const {
+    static std::mutex mutex;
+    static RecentTileset recent;
+    const FileState state = file_state(tileset());  // before it is read: never newer than the model
+    const fs::path path = fs::absolute(tileset());
+    {
+        const std::lock_guard lock(mutex);
+        if (recent.model != nullptr && recent.path == path && recent.state == state)
+            return recent.model;
+    }
+    auto model = std::make_shared<const Model>(read());
+    const std::lock_guard lock(mutex);
+    recent = {path, state, model};
+    return model;
 }
 
 std::shared_ptr<const Mesh> Store::load_mesh(Hash hash) const {
@@ -186,7 +214,7 @@ uint64_t Store::save_bound(Hash bind_hash, const BoundLevels& levels) const {
     return bytes.size();
 }
 
-uint64_t Store::write(const Model& model, const Job& job) const {
+uint64_t Store::write(const Model& model, const Job& job, StoreUpdate update) const {
     job.stage(JobStage::Store);
     make_folder(folder_ / "r");
     const FileLock lock(folder_ / "lock", job);
@@ -220,23 +248,27 @@ uint64_t Store::write(const Model& model, const Job& job) const {
     bytes += write_pictures(model, job);
     job.check();
 
-    const fs::path tileset = folder_ / "tileset.json";
     const std::vector<fs::path> unused = unused_files(folder_, files_of(model));
-    std::set<std::string> before;  // of the previous one, which somebody may be reading
-    if (!unused.empty() && exists())
-        before = stems_in(read_file(tileset, kMostTilesetBytes));
-    const std::string text = tileset_text(model);
-    if (text.size() > kMostTilesetBytes)
-        fail(Status::Io, "'", tileset.string(), "' would have ", text.size(), " bytes; at most ",
-             kMostTilesetBytes, " are read");
-    write_file(tileset, text);
+    const std::string previous = exists() ? read_file(tileset(), kMostTilesetBytes) : "";
+    const DescriptionText description = description_text(model);
+    if (!previous.starts_with(tileset_head(description, update == StoreUpdate::Anything))) {
+        const std::string text = tileset_text(model, description);
+        if (text.size() > kMostTilesetBytes)
+            fail(Status::Io, "'", tileset().string(), "' would have ", text.size(),
+                 " bytes; at most ", kMostTilesetBytes, " are read");
+        write_file(tileset(), text);
+        bytes += text.size();
+    }
+    // Somebody may be reading the previous one.
+    const std::set<std::string> before =
+        unused.empty() ? std::set<std::string>{} : stems_in(previous);
     for (const fs::path& path : unused) {
         std::error_code error;
         if (!before.contains(path.stem().string()))
             fs::remove(path, error);
     }
     job.progress(1);
-    return bytes + text.size();
+    return bytes;
 }
 
 uint64_t Store::write_pictures(const Model& model, const Job& job) const {

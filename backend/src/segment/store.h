@@ -17,6 +17,12 @@
 
 namespace lodestone::segment {
 
+/// The change from which on a tileset.json is replaced.
+enum class StoreUpdate : uint8_t {
+    Anything,  // anything that it says
+    Objects,   // anything but cameras, lights and the world, which every frame has of its own
+};
+
 class Store {
 public:
     /// The folder, or the tileset.json in it. Nothing is touched until a call asks for it.
@@ -29,6 +35,10 @@ public:
     /// The stored model: summaries, assemblies and primitives resident, meshes not.
     /// Throws Error(Io or BadFile); every index, number and name is checked first.
     Model read() const;
+
+    /// The same, but parsed once for each state of the file by a process: the frames of an
+    /// animation share one. Safe from several threads.
+    std::shared_ptr<const Model> read_shared() const;
 
     /// The mesh of a representation by its summary's hash. Throws Error(Io or BadFile).
     /// Safe from several threads.
@@ -54,13 +64,15 @@ public:
     /// Returns the bytes written. Throws Error(Io).
     uint64_t save_bound(Hash bind_hash, const BoundLevels& levels) const;
 
-    /// Writes what is missing, then replaces tileset.json, then removes files that
-    /// neither the new nor the previous tileset.json names. A killed write leaves the old store.
-    /// Representations and pictures that are not resident must be in the store already.
+    /// Writes what is missing, then replaces tileset.json if what it says has changed, then removes
+    /// files that neither the new nor the previous tileset.json names. A killed write leaves the
+    /// old store. Representations and pictures that are not resident must be in the store already.
     /// Returns the bytes written. Throws Error(Io), also when another writer is at work.
-    uint64_t write(const Model& model, const Job& job) const;
+    uint64_t write(const Model& model, const Job& job,
+                   StoreUpdate update = StoreUpdate::Anything) const;
 
 private:
+    std::filesystem::path tileset() const;
     uint64_t write_pictures(const Model& model, const Job& job) const;
 
     std::filesystem::path folder_;

@@ -169,13 +169,27 @@ Json out(const Camera& c) {
             {"aperture", c.aperture}};
 }
 
-/// Our own description of a model. Object indices are positions in `order`.
-Json describe(const Model& model) {
+/// Names may be any bytes; JSON holds UTF-8.
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+Json out(const World& world, PictureList& pictures) {
+    Json json = {{"color", out(world.color)}, {"transparent", world.transparent}};
+    if (world.environment) {
+        json["environment"] = pictures.index_of(world.environment);
+        json["turn"] = out(world.environment_turn);
+        json["strength"] = out(world.environment_strength);
+    }
+    return json;
+}
+
+/// The description of a model but for its view. Object indices are positions in `order`.
+Json describe_objects(const Model& model, PictureList& pictures) {
     Json json = {{"format", kStoreFormat},
                  {"version", LODESTONE_VERSION},
                  {"root", model.root == kNoObject ? Json() : Json(model.root)}};
     Json& materials = json["materials"] = Json::array();
-    PictureList pictures;
     for (const Material& material : model.materials)
         materials.push_back(MaterialWords(material, pictures).words());
     Json& objects = json["objects"] = Json::array();
@@ -199,27 +213,33 @@ Json describe(const Model& model) {
             representations.push_back(out(representation));
         objects.push_back(std::move(one));
     }
+    return json;
+}
+
+/// The description of all that a picture is taken with: cameras, lights and the world.
+Json describe_view(const Model& model, PictureList& pictures) {
+    Json json;
     json["lights"] = Json::array();
     for (const Light& light : model.lights)
         json["lights"].push_back(out(light));
     json["cameras"] = Json::array();
     for (const Camera& camera : model.cameras)
         json["cameras"].push_back(out(camera));
-    json["world"] = {{"color", out(model.world.color)}, {"transparent", model.world.transparent}};
-    if (model.world.environment) {
-        json["world"]["environment"] = pictures.index_of(model.world.environment);
-        json["world"]["turn"] = out(model.world.environment_turn);
-        json["world"]["strength"] = out(model.world.environment_strength);
-    }
-    json["pictures"] = pictures.take();
+    json["world"] = out(model.world, pictures);
     return json;
 }
 
 }  // namespace
 
-std::string description_text(const Model& model) {
-    // Names may be any bytes; JSON holds UTF-8.
-    return describe(model).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+DescriptionText description_text(const Model& model) {
+    PictureList pictures;
+    Json objects = describe_objects(model, pictures);
+    const Json view = describe_view(model, pictures);
+    objects["pictures"] = pictures.take();
+    DescriptionText text{dumped(objects), dumped(view)};
+    text.objects.back() = ',';  // for its brace
+    text.view.erase(0, 1);
+    return text;
 }
 
 }  // namespace lodestone::segment

@@ -273,9 +273,16 @@ std::string bound_file_of(Hash bind_hash) {
     return text("b/", hex16(bind_hash), ".bound");
 }
 
-std::string tileset_text(const Model& model) {
+std::string tileset_head(const DescriptionText& description, bool with_view) {
     std::string text = "{\"asset\":{\"version\":\"1.1\",\"extras\":{\"lodestone\":";
-    text += description_text(model);
+    text += description.objects;
+    if (with_view)
+        text += description.view;
+    return text;
+}
+
+std::string tileset_text(const Model& model, const DescriptionText& description) {
+    std::string text = tileset_head(description);
     text += "}},";
     text += tiles_text(model);
     text += "}\n";

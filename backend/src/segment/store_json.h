@@ -22,11 +22,22 @@ std::string file_of(const Picture& picture);
 /// The names of the files of every representation, bound levels and pictures of a model.
 std::set<std::string> files_of(const Model& model);
 
-/// Our own description, the value of asset.extras.lodestone. Doubles keep their bits.
-std::string description_text(const Model& model);
+/// Our own description, the value of asset.extras.lodestone, in two parts, one after the other.
+/// Doubles keep their bits.
+struct DescriptionText {
+    std::string objects;
+    std::string view;  // cameras, lights and the world
+};
+DescriptionText description_text(const Model& model);
 
+/// The first part of tileset.json, up to the end of our description (or of its objects alone). All
+/// that follows is made of what the description says.
+std::string tileset_head(const DescriptionText& description, bool with_view = true);
 /// The whole tileset.json. Doubles are written so that reading gives the same bits.
-std::string tileset_text(const Model& model);
+std::string tileset_text(const Model& model, const DescriptionText& description);
+inline std::string tileset_text(const Model& model) {
+    return tileset_text(model, description_text(model));
+}
 
 /// The model described in a tileset.json; meshes and pictures not resident. Throws Error(BadFile)
 /// saying what is wrong; nothing in the text is trusted.

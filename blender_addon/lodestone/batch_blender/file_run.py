@@ -214,6 +214,7 @@ class FileRun:
             raise Failed(ExitCode.FAILED, f"cannot make the folder of the levels: {error}")
         models = self._poses.models if self._poses is not None else ()
         options = native.BuildOptions(threads=self.job.threads, poses=models)
+        options.of_one_frame = 1 if self.job.frames else 0
         done = self._long(lambda: model.build(str(store), options, self.work.new_job("Levels")))
         part = report_parts.build_part(done)
         self.result.setdefault("build", part)

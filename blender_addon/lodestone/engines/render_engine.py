@@ -345,10 +345,8 @@ class _Run:
 
     def _build_options(self, view):
         """What property_groups.BUILD_ON_RENDER says."""
-        poses = self.poses.models
-        if self.build == "ALL":
-            return native.BuildOptions(poses=poses)
-        options = native.BuildOptions(poses=poses, view=view)
+        view = None if self.build == "ALL" else view
+        options = native.BuildOptions(poses=self.poses.models, view=view, of_one_frame=1)
         if self.build == "NONE":
             options.share = 0.0
         return options

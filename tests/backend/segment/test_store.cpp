@@ -262,14 +262,46 @@ TEST(Store, AChangedPictureFileIsNamed) {
     }
 }
 
-TEST(Store, SecondWriteOfTheSameModelWritesOnlyTheTileset) {
+TEST(Store, SecondWriteOfTheSameModelWritesNothing) {
     const segment::Store store(scratch("again"));
     const Model model = rich_model();
     const uint64_t first = store.write(model, {});
-    const auto text = read_file(store.folder() / "tileset.json");
-    EXPECT_EQ(store.write(model, {}), text.size());
-    EXPECT_GT(first, text.size());
+    const FileState state = file_state(store.folder() / "tileset.json");
+    EXPECT_GT(first, state.bytes);
+    EXPECT_EQ(store.write(model, {}), 0u);
+    EXPECT_EQ(store.write(store.read(), {}), 0u);
+    EXPECT_EQ(file_state(store.folder() / "tileset.json"), state);
+}
+
+TEST(Store, AViewThatChangedIsWrittenUnlessItIsThatOfOneFrame) {
+    const segment::Store store(scratch("frames"));
+    Model model = rich_model();
+    store.write(model, {});
+    const std::string text = read_file(store.folder() / "tileset.json");
+    model.cameras.at(0).position.x += 1;
+    model.lights.at(0).power *= 2;
+    model.world.color *= 0.5;
+    EXPECT_EQ(store.write(model, {}, segment::StoreUpdate::Objects), 0u);
     EXPECT_EQ(read_file(store.folder() / "tileset.json"), text);
+    EXPECT_GT(store.write(model, {}), 0u);
+    EXPECT_EQ(store.read().cameras.at(0).position, model.cameras[0].position);
+    model.objects[0].name += " renamed";
+    EXPECT_GT(store.write(model, {}, segment::StoreUpdate::Objects), 0u);
+    EXPECT_EQ(store.read().objects[0].name, model.objects[0].name);
+}
+
+TEST(Store, WhatIsSharedIsReadAgainWhenItHasChanged) {
+    const segment::Store store(scratch("shared"));
+    Model model = rich_model();
+    store.write(model, {});
+    const auto first = store.read_shared();
+    EXPECT_EQ(store.read_shared(), first);
+    model.objects[0].name = "another";
+    store.write(model, {});
+    EXPECT_EQ(store.read_shared()->objects[0].name, "another");
+    EXPECT_NE(first->objects[0].name, "another");
+    fs::remove(store.folder() / "tileset.json");
+    EXPECT_THROW(store.read_shared(), Error);
 }
 
 TEST(Store, UnusedFilesGoAfterTheNextButOneWrite) {

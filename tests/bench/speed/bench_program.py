@@ -2,11 +2,13 @@
 """Runs a bench that is a C++ program, and writes what it prints as a page of results.
 
     /usr/bin/python3 tests/bench/speed/bench_program.py cut [--write]
+    /usr/bin/python3 tests/bench/speed/bench_program.py builds [--write]
     /usr/bin/python3 tests/bench/speed/bench_program.py crowds [--write]
     /usr/bin/python3 tests/bench/speed/bench_program.py group [--write] [-- --flat 1000 STORE ...]
 
-Builds the program in build/release first; its source (bench_cut.cpp, bench_crowds.cpp,
-bench_group.cpp) tells what it measures and what the words after -- are. No number makes it fail.
+Builds the program in build/release first; its source (bench_builds.cpp,
+bench_cut.cpp, bench_crowds.cpp, bench_group.cpp) tells what it measures and what the words after --
+are. No number makes it fail.
 """
 
 import argparse
@@ -18,7 +20,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench import benching  # noqa: E402
 
 BUILD = benching.ROOT / "build" / "release"
-TITLES = {"cut": "Choosing", "group": "Grouping", "crowds": "Crowds from afar"}
+TITLES = {
+    "builds": "Builds after changes",
+    "cut": "Choosing",
+    "group": "Grouping",
+    "crowds": "Crowds from afar",
+}
 
 
 def options_of(arguments: list[str] | None = None) -> argparse.Namespace:

@@ -20,8 +20,13 @@ public:
     /// name of the first stays.
     uint32_t index_of(const Material& material);
 
+    /// Numbers what was added in the order in which the levels of `order` use it, whatever was
+    /// built first, and drops what none uses. Ends the use of the palette.
+    void renumber(const std::vector<ObjectIndex>& order);
+
 private:
     Model& model_;
+    size_t own_;  // the materials that the model has had before
     std::map<Hash, uint32_t> by_hash_;
 };
 

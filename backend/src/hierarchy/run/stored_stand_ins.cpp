@@ -9,11 +9,11 @@ StoredStandIns::StoredStandIns(const segment::Store& store, bool ignore) {
     if (ignore || !store.exists())
         return;
     try {
-        stored_ = store.read();
+        stored_ = store.read_shared();
     } catch (const Error&) {
         return;
     }
-    for (const Object& object : stored_.objects) {
+    for (const Object& object : stored_->objects) {
         if (object.build_hash != 0 && store.has_stand_ins(object))
             by_hash_.try_emplace(object.build_hash, &object);
     }
@@ -31,7 +31,7 @@ void StoredStandIns::adopt(Object& object, const Object& stored, MaterialPalette
     for (size_t lod = 1; lod < stored.representations.size(); ++lod) {
         Representation representation = stored.representations[lod];
         for (uint32_t& material : representation.materials)
-            material = palette.index_of(stored_.materials.at(material));
+            material = palette.index_of(stored_->materials.at(material));
         object.representations.push_back(std::move(representation));
     }
 }

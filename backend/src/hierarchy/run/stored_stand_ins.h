@@ -22,7 +22,7 @@ public:
     void adopt(Object& object, const Object& stored, MaterialPalette& palette) const;
 
 private:
-    Model stored_;
+    std::shared_ptr<const Model> stored_;
     std::map<Hash, const Object*> by_hash_;
 };
 

@@ -35,7 +35,11 @@ def read(store: Path) -> dict[str, list[str]]:
 
 
 def write(store: Path, still: dict[str, list[str]]) -> None:
-    """Raises OSError."""
+    """A file that says the same stays as it is. Raises OSError."""
+    if {kind: list(still[kind]) for kind in _KINDS} == read(store) and (
+        store / "motion.json"
+    ).is_file():
+        return
     store.mkdir(parents=True, exist_ok=True)
     temporary = store / f".motion-{os.getpid()}.json"
     try:
