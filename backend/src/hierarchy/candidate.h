@@ -31,6 +31,7 @@ struct StandInCandidate {
     bool at_least = false;
     Payload payload;
     std::vector<Material> materials;  // by slot
+    MaterialMeans means;              // of the last of them
     double clear_area = 0;            // of a mesh's boxes that stand for what is thin
     CandidateState state = CandidateState::Measured;
     /// Solids that are matched in area and centroid, but by few rays: settle() uses more. No state:

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/flattened_group.h"
 
+#include "model/finish.h"
+
 #include <cmath>
 #include <limits>
 #include <map>
 
 namespace lodestone::hierarchy {
-namespace {
-
-/// A material as a mesh without texture coordinates shows it. Joined with a mesh that has them,
-/// such a mesh gets some, too, but they mean nothing.
-Material without_textures(Material material) {
-    for_own_textures(material, [](Texture& texture) { texture = Texture{}; });
-    if (material.other)
-        material.other = std::make_shared<const Material>(without_textures(*material.other));
-    return material;
-}
-
-}  // namespace
-
 FlattenedGroup flatten_group(OpenedGroup& group, double error, const MeshSource& source,
                              const Job& job) {
     FlattenedGroup flat;
@@ -30,8 +19,10 @@ FlattenedGroup flatten_group(OpenedGroup& group, double error, const MeshSource&
         const bool plain = !has_uvs && textured(material);
         const auto [at, fresh] =
             slots.try_emplace({index, plain}, static_cast<uint16_t>(slots.size()));
-        if (fresh)
+        if (fresh) {
             flat.materials.push_back(plain ? without_textures(material) : material);
+            flat.sources.push_back({index, plain});
+        }
         return at->second;
     };
     for (const uint32_t index : cut.chosen) {

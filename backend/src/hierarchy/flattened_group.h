@@ -8,9 +8,10 @@
 namespace lodestone::hierarchy {
 
 struct FlattenedGroup {
-    Mesh mesh;                         // in the group's frame
-    std::vector<Material> materials;   // by slot
-    std::vector<uint32_t> occurrence;  // a triangle: which of the drawn things it is of
+    Mesh mesh;                            // in the group's frame
+    std::vector<Material> materials;      // by slot
+    std::vector<SourceMaterial> sources;  // likewise, where these are from
+    std::vector<uint32_t> occurrence;     // a triangle: which of the drawn things it is of
     size_t occurrences = 0;
     std::vector<uint32_t> placement;   // an occurrence: which of the group's it is below
     std::vector<uint8_t> environment;  // likewise: whether it is, or is below, what is marked so

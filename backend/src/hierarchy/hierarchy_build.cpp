@@ -46,11 +46,24 @@ void add(Object& object, std::vector<StandInCandidate>&& made, Model& model,
         representation.summary.max_error = candidate.max_error;
         representation.summary.sealed = candidate.state == CandidateState::Sealed;
         representation.payload = std::move(candidate.payload);
+        representation.means = std::move(candidate.means);
         for (const Material& material : candidate.materials)
             representation.materials.push_back(palette.index_of(material));
         summarize(representation, model);
         object.representations.push_back(std::move(representation));
     }
+}
+
+Model without_stand_ins(const Model& model) {
+    Model out = model;
+    for (Object& object : out.objects) {
+        if (object.representations.size() > 1)
+            object.representations.resize(1);
+        object.build_hash = 0;
+        object.bind_hash = 0;
+        object.sources.clear();
+    }
+    return out;
 }
 
 /// Length of the longest way down to a leaf: groups of one height do not depend on each other.
@@ -96,13 +109,11 @@ public:
         const StoredStandIns shelf(store_, settings_.rebuild);
         const std::vector<size_t> heights = heights_of(model_, order);
         surroundings_ = surroundings_of(model_, order, mesh_source(), job_);
-        BuildPlan plan = plan_build(model_, order, surroundings_, shelf, settings_);
+        BuildPlan plan = plan_build(model_, order, surroundings_, shelf, palette_, settings_);
         report.objects = plan.objects;
         for (const ObjectIndex index : plan.not_followed)
             problems_.push_back(
                 {model_.objects[index].name, Severity::Info, "not_followed", kNotFollowed});
-        for (const auto& [index, stored] : plan.stored)
-            shelf.adopt(model_.objects[index], *stored, palette_);
         wanted_ = std::move(plan.wanted);
 
         std::vector<BuildTask>& tasks = plan.tasks;
@@ -202,6 +213,7 @@ private:
             to.attributes = from.attributes;
             to.build_hash = from.build_hash;
             to.bind_hash = from.bind_hash;
+            to.sources = from.sources;
             to.representations.insert(to.representations.end(), from.representations.begin() + 1,
                                       from.representations.end());
             copy = kNoObject;
@@ -363,6 +375,9 @@ private:
             if (!made[i])
                 continue;
             object.attributes = made[i]->attributes;
+            object.sources = std::move(made[i]->sources);
+            for (SourceMaterial& one : object.sources)  // as it is when read from the store
+                one.material = palette_.index_of(model_.materials.at(one.material));
             add(object, std::move(made[i]->candidates), model_, palette_, wanted_[objects[i]]);
         }
     }
@@ -385,15 +400,17 @@ private:
 
 }  // namespace
 
-BuildReport estimate_build(Model& model, const segment::Store& store,
+BuildReport estimate_build(Model& given, const segment::Store& store,
                            const BuildSettings& settings) {
     BuildReport report;
-    const std::vector<ObjectIndex> order = bottom_up(model);
-    summarize_assemblies(model, order);
+    const std::vector<ObjectIndex> order = bottom_up(given);
+    summarize_assemblies(given, order);
+    Model model = without_stand_ins(given);
+    MaterialPalette palette(model);
     const StoredStandIns shelf(store, settings.rebuild);
     const StandInSurroundings surroundings =
         surroundings_of(model, order, mesh_source_of(store), {});
-    const BuildPlan plan = plan_build(model, order, surroundings, shelf, settings);
+    const BuildPlan plan = plan_build(model, order, surroundings, shelf, palette, settings);
     report.objects = plan.objects;
     std::set<Hash> binds;  // counted already
     double seconds = 0;
@@ -416,13 +433,7 @@ BuildReport estimate_build(Model& model, const segment::Store& store,
 BuildReport build_hierarchy(Model& model, const segment::Store& store,
                             const BuildSettings& settings, Problems& problems, const Job& job) {
     // Work on a copy of the lists (payloads are shared), so that a cancelled build changes nothing.
-    Model next = model;
-    for (Object& object : next.objects) {
-        if (object.representations.size() > 1)
-            object.representations.resize(1);
-        object.build_hash = 0;
-        object.bind_hash = 0;
-    }
+    Model next = without_stand_ins(model);
     const BuildReport report = HierarchyBuilder(next, store, settings, problems, job).run();
     model = std::move(next);
     return report;

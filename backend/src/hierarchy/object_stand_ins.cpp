@@ -71,7 +71,7 @@ uint64_t triangles_to_flatten(const RepresentationSummary& finest, const BuildSe
 }
 
 uint64_t seed_of(const Object& object, const BuildSettings& settings) {
-    return Hasher().value(object.source_hash).value(settings.seed).result();
+    return Hasher().value(object.shape_hash).value(settings.seed).result();
 }
 
 }  // namespace
@@ -130,6 +130,7 @@ StandIns stand_ins_of_group(const Model& model, ObjectIndex group,
     const FlattenedGroup reference = flatten_group(opened, fine, source, job);
     if (reference.mesh.empty())
         return out;
+    out.sources = reference.sources;
     FinestOptions options{seed_of(object, settings)};
     options.environment = surroundings.environment[group] != 0;
     options.in_layers = lies_on_a_layer(model, group, surroundings.layers);

@@ -16,6 +16,7 @@ namespace lodestone::hierarchy {
 struct StandIns {
     Attributes attributes;
     std::vector<StandInCandidate> candidates;  // errors rise strictly, costs fall
+    std::vector<SourceMaterial> sources;       // Object::sources
 };
 
 struct StandInSurroundings;  // hierarchy/run/stand_in_surroundings.h

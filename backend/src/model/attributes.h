@@ -4,7 +4,18 @@
 
 #include "base/maths.h"
 
+#include <cstdint>
+#include <vector>
+
 namespace lodestone {
+
+/// The share of something that a slot's triangles have.
+struct SlotShare {
+    uint16_t slot = 0;
+    double share = 0;
+};
+/// By slot, rising; the shares come to 1.
+using SlotShares = std::vector<SlotShare>;
 
 struct Attributes {
     double visible_area = 0;    // VSA, m^2; open sheets count both sides
@@ -14,10 +25,11 @@ struct Attributes {
     glm::dmat3 axes{1.0};       // principal frame (columns, right-handed), longest axis first
     double normal_moment = 0;   // mean of sum n_i^4 in that frame: box 1, sphere 0.6
     glm::dvec3 color{0.8};      // mean base color, by visible area
-    double roughness = 0.5;     // likewise
+    glm::dvec3 emission{0.0};   // likewise
+    double roughness = 0.5;     // likewise, of the materials' means
     double metallic = 0;        // likewise
     double specular = 0.5;      // likewise
-    glm::dvec3 emission{0.0};   // likewise
+    SlotShares shares{};        // of the visible area, by which these are means; empty: not known
     double relative_error = 0;  // of visible_area, 95 % confidence
     uint64_t rays = 0;          // how many were cast
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/model.h"
 
+#include "model/finish.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -147,9 +149,14 @@ void summarize(Representation& representation, const Model& model, std::optional
     summary.bound = bound_of(summary.kind, representation.payload);
     summary.cost = cost_of(summary.kind, representation.payload, model.costs);
     add_to_hash(hasher, summary.kind, representation.payload, mesh_hash);
-    for (const uint32_t material : representation.materials)
-        hasher.value(hash_of(model.materials.at(material)));
+    Hasher shape = hasher;
+    for (const uint32_t index : representation.materials) {
+        const Material& material = model.materials.at(index);
+        hasher.value(hash_of(material));
+        shape.value(look_hash_of(material));
+    }
     summary.hash = hasher.result();
+    summary.shape = shape.result();
 }
 
 void set_costs(Model& model, const CostModel& costs) {
@@ -191,18 +198,23 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
         Representation& finest = object.representations[0];
         Hasher hasher;
         hasher.value(object.role);
+        Hasher shape = hasher;
         if (object.group()) {
             RepresentationSummary& summary = finest.summary;
             summary.bound = Bound{};
             Hasher content;
             content.value(summary.kind);
+            Hasher shapes = content;
             for (const Placement& placement : finest.assembly().placements) {
                 const Object& child = model.objects[placement.object];
                 double rows[12];
                 placement.transform.to_rows(rows);
                 content.bytes(rows, sizeof rows).value(child.source_hash);
-                if (placement.hidden != 0)
+                shapes.bytes(rows, sizeof rows).value(child.shape_hash);
+                if (placement.hidden != 0) {
                     content.value(placement.hidden);
+                    shapes.value(placement.hidden);
+                }
                 if (child.representations.empty())
                     continue;
                 const RepresentationSummary& part = child.representations[0].summary;
@@ -210,8 +222,10 @@ void summarize_assemblies(Model& model, const std::vector<ObjectIndex>& order) {
             }
             summary.cost = cost_of_children(finest, model);
             summary.hash = content.result();
+            summary.shape = shapes.result();
         }
         object.source_hash = hasher.value(finest.summary.hash).result();
+        object.shape_hash = shape.value(finest.summary.shape).result();
     }
 }
 

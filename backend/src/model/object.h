@@ -18,6 +18,12 @@ enum class ObjectRole : uint8_t {
     Ordinary = 2,
 };
 
+/// A material that a group's stand-ins were made from.
+struct SourceMaterial {
+    uint32_t material = 0;  // into Model::materials
+    bool plain = false;     // without its textures
+};
+
 struct Object {
     std::string uid;   // stable, unique in its model
     std::string name;  // the user's
@@ -35,9 +41,12 @@ struct Object {
     /// infinite where something must not be drawn coarser than some level. See set_demands.
     double demand = 1;
     Hash source_hash = 0;  // of the finest representation and of all below it
-    Hash build_hash = 0;   // of the source and settings its stand-ins were made from; 0 = none
+    Hash shape_hash = 0;   // of the same without the materials' finishes
+    Hash build_hash = 0;   // of the shape and settings its stand-ins were made from; 0 = none
     Hash bind_hash = 0;    // of the poses and settings its levels were collapsed from; 0 = none
     std::optional<Attributes> attributes;
+    /// By slot, of the mesh that a group's stand-ins were made from. Those of a leaf are its own.
+    std::vector<SourceMaterial> sources;
     /// Index = LOD number: 0 is the finest, errors rise strictly. Only [0] may be an assembly.
     std::vector<Representation> representations;
 

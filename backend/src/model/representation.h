@@ -3,11 +3,16 @@
 // absent.
 #pragma once
 
+#include "model/attributes.h"
 #include "model/representation_kinds.h"
 
 #include <vector>
 
 namespace lodestone {
+
+/// The slots of what a level was made from that the levels' last materials are means of, one list a
+/// material; all materials before have the finish of the slot of their number.
+using MaterialMeans = std::vector<SlotShares>;
 
 struct RepresentationSummary {
     Kind kind = Kind::Mesh;
@@ -15,7 +20,8 @@ struct RepresentationSummary {
     double max_error = 0;  // the largest distance behind the error's quantile
     Bound bound;           // object's frame
     DrawCost cost;
-    Hash hash = 0;  // of the payload and its materials: equal hashes draw the same
+    Hash hash = 0;   // of the payload and its materials: equal hashes draw the same
+    Hash shape = 0;  // of the finest: the same without the materials' finishes
     /// For a group's stand-in: the children together do not look like the group where this is used,
     /// so that it is not opened for them where they cost less.
     bool sealed = false;
@@ -31,6 +37,7 @@ inline double bytes_per_occurrence(Kind kind, uint64_t bytes, uint64_t uses) {
 struct Representation {
     RepresentationSummary summary;
     std::vector<uint32_t> materials;  // by slot, into Model::materials; a primitive uses the first
+    MaterialMeans means;              // of a stand-in
     Payload payload;
 
     bool resident() const { return payload.index() != 0; }

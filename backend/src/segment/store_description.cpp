@@ -102,6 +102,16 @@ private:
     Json json_ = Json::object();
 };
 
+/// Slots and their shares, one after the other.
+Json out(const SlotShares& shares) {
+    Json json = Json::array();
+    for (const SlotShare& one : shares) {
+        json.push_back(one.slot);
+        json.push_back(one.share);
+    }
+    return json;
+}
+
 Json out(const Attributes& a) {
     return {{"visible_area", a.visible_area},
             {"surface_area", a.surface_area},
@@ -114,6 +124,7 @@ Json out(const Attributes& a) {
             {"metallic", a.metallic},
             {"specular", a.specular},
             {"emission", out(a.emission)},
+            {"shares", out(a.shares)},
             {"relative_error", a.relative_error},
             {"rays", a.rays}};
 }
@@ -131,6 +142,10 @@ Json out(const Representation& r) {
     }
     if (s.sealed)
         json["sealed"] = true;
+    if (s.error == 0)
+        json["shape"] = hex16(s.shape);
+    for (const SlotShares& mean : r.means)
+        json["means"].push_back(out(mean));
     write_payload(json, r);
     return json;
 }
@@ -208,6 +223,8 @@ Json describe_objects(const Model& model, PictureList& pictures) {
             one["bind_hash"] = hex16(object.bind_hash);
         if (object.attributes)
             one["attributes"] = out(*object.attributes);
+        for (const SourceMaterial& source : object.sources)
+            one["sources"].push_back({source.material, source.plain});
         Json& representations = one["representations"] = Json::array();
         for (const Representation& representation : object.representations)
             representations.push_back(out(representation));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace lodestone::segment {
@@ -107,6 +108,20 @@ private:
     Material made_;
 };
 
+SlotShares shares(const Json& json) {
+    if (json.size() % 2 != 0)
+        fail(Status::BadFile, "a slot has no share");
+    SlotShares out;
+    for (size_t i = 0; i < json.size(); i += 2) {
+        const auto slot = json.at(i).get<uint64_t>();
+        const double share = json.at(i + 1).get<double>();
+        if (slot > std::numeric_limits<uint16_t>::max() || !std::isfinite(share))
+            fail(Status::BadFile, "slot ", slot, " has the share ", share);
+        out.push_back({static_cast<uint16_t>(slot), share});
+    }
+    return out;
+}
+
 Attributes attributes(const Json& json) {
     Attributes a;
     a.visible_area = number(json, "visible_area");
@@ -120,6 +135,7 @@ Attributes attributes(const Json& json) {
     a.metallic = number(json, "metallic");
     a.specular = number(json, "specular");
     a.emission = vector(json, "emission");
+    a.shares = shares(json.at("shares"));
     a.relative_error = number(json, "relative_error");
     a.rays = integer<uint64_t>(json, "rays");
     return a;
@@ -149,6 +165,14 @@ Representation representation(const Json& json, size_t object_count, size_t mate
             fail(Status::BadFile, "a representation names material ", index, " of ",
                  material_count);
     }
+    if (s.error == 0)
+        s.shape = hash(json, "shape");
+    if (json.contains("means")) {
+        for (const Json& one : json.at("means"))
+            r.means.push_back(shares(one));
+    }
+    if (r.means.size() > r.materials.size())
+        fail(Status::BadFile, "a representation has more means than materials");
     r.payload = read_payload(json, s.kind, {object_count, r.materials.size()});
     return r;
 }
@@ -168,6 +192,15 @@ Object object(const Json& json, size_t object_count, size_t material_count) {
         o.bind_hash = hash(json, "bind_hash");
     if (json.contains("attributes"))
         o.attributes = attributes(json.at("attributes"));
+    if (json.contains("sources")) {
+        for (const Json& one : json.at("sources")) {
+            const auto index = one.at(0).get<uint64_t>();
+            if (index >= material_count)
+                fail(Status::BadFile, "'", o.name, "' is made of material ", index, " of ",
+                     material_count);
+            o.sources.push_back({static_cast<uint32_t>(index), one.at(1).get<bool>()});
+        }
+    }
     double last = -1;
     for (const Json& one : json.at("representations")) {
         o.representations.push_back(representation(one, object_count, material_count));

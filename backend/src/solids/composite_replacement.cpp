@@ -43,6 +43,8 @@ ClusterSample sample_at(const Mesh& mesh, const ray::SkinPtr& skin,
     const glm::dvec3 normal = area_vector(mesh, at.triangle);
     const double length = glm::length(normal);
     out.normal = length > 0 ? normal / length : glm::dvec3(0, 0, 1);
+    out.slot = mesh.slot(at.triangle);
+    out.finish = mean_finish(skin ? skin->material(out.slot) : Material{});
     if (skin)
         out.shown = skin->at(mesh, at.triangle, at.u, at.v);
     return out;

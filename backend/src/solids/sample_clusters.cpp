@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace lodestone::solids {
 namespace {
@@ -24,17 +26,26 @@ Attributes attributes_of(const std::vector<ClusterSample>& samples,
     const auto count = static_cast<double>(cluster.size());
     measure::NormalMoments normals;
     out.color = glm::dvec3(0.0);
-    out.roughness = out.metallic = out.specular = 0;
+    std::map<uint16_t, std::pair<double, SolidFinish>> slots;  // the number of samples, the finish
     for (const uint32_t i : cluster) {
         const ClusterSample& sample = samples[i];
         out.centroid += sample.point / count;
         out.color += sample.shown.color / count;
         out.emission += sample.shown.emission / count;
-        out.roughness += sample.shown.roughness / count;
-        out.metallic += sample.shown.metallic / count;
-        out.specular += sample.shown.specular / count;
+        auto& [own, finish] = slots[sample.slot];
+        own += 1;
+        finish = sample.finish;
         normals.add(sample.normal, 1);
     }
+    SolidFinish mean;
+    for (const auto& [slot, one] : slots) {
+        const double share = one.first / count;
+        out.shares.push_back({slot, share});
+        mean.roughness += share * one.second.roughness;
+        mean.metallic += share * one.second.metallic;
+        mean.specular += share * one.second.specular;
+    }
+    set_finish(out, mean);
     for (const uint32_t i : cluster) {
         const glm::dvec3 arm = samples[i].point - out.centroid;
         out.moments += area * glm::outerProduct(arm, arm);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/job.h"
-#include "model/attributes.h"
+#include "model/finish.h"
 #include "ray/mesh_skin.h"
 
 #include <optional>
@@ -16,6 +16,8 @@ struct ClusterSample {
     glm::dvec3 point{0.0};
     glm::dvec3 normal{0.0};
     ray::SurfaceAppearance shown;
+    SolidFinish finish;  // the mean of its slot's material
+    uint16_t slot = 0;
     uint32_t triangle = 0;
 };
 

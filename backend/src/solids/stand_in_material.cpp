@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solids/stand_in_material.h"
 
+#include "model/finish.h"
 #include "solids/solid_replacement.h"
 
 #include <glm/common.hpp>
@@ -27,9 +28,7 @@ Material mean_material(const Attributes& attributes) {
         out.base_color[i] = within(attributes.color[i], 1, usual.base_color[i]);
         out.emission[i] = within(attributes.emission[i], 1e30, 0);
     }
-    out.roughness = within(attributes.roughness, 1, usual.roughness);
-    out.metallic = within(attributes.metallic, 1, usual.metallic);
-    out.specular = within(attributes.specular, 1, usual.specular);
+    set_finish(out, SolidFinish{attributes.roughness, attributes.metallic, attributes.specular});
     return out;
 }
 

@@ -39,9 +39,11 @@ StandInCandidate candidate_of(const solids::ClusteredComposite& level) {
     StandInCandidate out;
     out.kind = Kind::Composite;
     out.payload = std::make_shared<const Composite>(level.composite);
-    for (size_t i = 0; i < level.attributes.size(); ++i)
+    for (size_t i = 0; i < level.attributes.size(); ++i) {
         out.materials.push_back(
             solids::clear_material(solids::mean_material(level.attributes[i]), level.opacities[i]));
+        out.means.push_back(level.attributes[i].shares);
+    }
     return out;
 }
 

@@ -87,8 +87,10 @@ void propose_environment_stand_ins(ProposalRound& round) {
         candidate.payload = std::make_shared<const Mesh>(std::move(both));
         candidate.state = CandidateState::Unproven;
         candidate.materials = materials;
-        for (const Attributes& own : beside.attributes)
+        for (const Attributes& own : beside.attributes) {
             candidate.materials.push_back(solids::mean_material(own));
+            candidate.means.push_back(own.shares);
+        }
         measure_mesh(candidate, finest, job);
         round.candidates.push_back(std::move(candidate));
     }

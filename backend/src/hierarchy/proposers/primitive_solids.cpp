@@ -24,6 +24,7 @@ void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& boun
         candidate.kind = kind;
         candidate.payload = primitive;
         candidate.materials = {solids::clear_material(material, opacity)};
+        candidate.means = {finest.attributes.shares};
         candidate.by_few_rays = true;
         if (pictures) {
             compare_pictures(candidate, {}, finest, *pictures, job);

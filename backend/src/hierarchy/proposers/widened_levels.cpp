@@ -175,6 +175,7 @@ StandInCandidate widened_level(const StandInCandidate& level, const Mesh& others
             {true, clear.primitive, static_cast<uint16_t>(out.materials.size())});
         out.materials.push_back(
             solids::clear_material(solids::mean_material(thin.attributes[i]), clear.opacity));
+        out.means.push_back(thin.attributes[i].shares);
         out.clear_area += solids::box_shell(clear.primitive.half_size).area;
     }
     Mesh mesh = others;

@@ -21,7 +21,7 @@ bool is_always_opened(const Object& object) {
 
 /// `layers`: what layers_of tells of it; `ground`: what grounds_of does.
 Hash build_hash_of(const Object& object, Hash settings, Hash layers, uint8_t ground) {
-    const Hash hash = Hasher().value(object.source_hash).value(settings).result();
+    const Hash hash = Hasher().value(object.shape_hash).value(settings).result();
     if (layers == 0 && ground == 0)
         return hash;
     return Hasher().value(hash).value(layers).value(ground).result();
@@ -49,9 +49,9 @@ std::vector<bool> within(const std::vector<ObjectIndex>& scope, const Model& mod
 
 }  // namespace
 
-BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
+BuildPlan plan_build(Model& model, const std::vector<ObjectIndex>& order,
                      const StandInSurroundings& surroundings, const StoredStandIns& shelf,
-                     const BuildSettings& settings) {
+                     MaterialPalette& palette, const BuildSettings& settings) {
     const Hash of_settings = hash_of(settings, model.costs);
     std::vector<bool> inside = within(settings.scope, model, order);
     // A group that is another one moved has the levels of that one, whichever is stale: so an
@@ -100,8 +100,9 @@ BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
             wanted = Hasher().value(wanted).value(bind->hash).result();
         }
         plan.wanted[index] = wanted;
-        const auto same = task_of.find(wanted);
-        const auto same_moved = moved_one_of.find(wanted);
+        const Hash content = Hasher().value(wanted).value(object.source_hash).result();
+        const auto same = task_of.find(content);
+        const auto same_moved = moved_one_of.find(content);
         if (same != task_of.end()) {
             plan.tasks[same->second].copies.push_back(index);
             task_for.emplace(index, same->second);
@@ -109,15 +110,15 @@ BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
             MovedCopy one = same_moved->second;
             one.index = index;
             move(one);
-        } else if (const Object* stored = shelf.find(wanted)) {
-            plan.stored.emplace_back(index, stored);
+        } else if (shelf.adopt(model, index, wanted, palette)) {
+            continue;
         } else if (!inside[index]) {
             continue;
         } else if (const auto at = moved.find(index); at != moved.end()) {
-            moved_one_of.emplace(wanted, at->second);
+            moved_one_of.emplace(content, at->second);
             move(at->second);
         } else {
-            task_of.emplace(wanted, plan.tasks.size());
+            task_of.emplace(content, plan.tasks.size());
             task_for.emplace(index, plan.tasks.size());
             plan.tasks.push_back({{index, {}}, std::move(bind), {}});
         }

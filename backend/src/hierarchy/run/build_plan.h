@@ -23,19 +23,19 @@ struct BuildTask : StaleObject {
 };
 
 struct BuildPlan {
-    uint64_t objects = 0;                                       // that show anything
-    std::vector<Hash> wanted;                                   // build hashes, by object
-    std::vector<std::pair<ObjectIndex, const Object*>> stored;  // what the shelf has for which
-    std::vector<MovedCopy> moved;                               // whose originals the shelf has
-    std::vector<BuildTask> tasks;                               // children before parents
+    uint64_t objects = 0;                   // that show anything
+    std::vector<Hash> wanted;               // build hashes, by object
+    std::vector<MovedCopy> moved;           // whose originals the shelf has
+    std::vector<BuildTask> tasks;           // children before parents
     std::vector<ObjectIndex> not_followed;  // deform, but none of the poses is theirs
 };
 
-/// Plans the objects of `order` (children before parents), within the scope of the settings. The
-/// plan is valid as long as the shelf and the models of poses. Throws Error(InvalidArgument) for a
+/// Plans the objects of `order` (children before parents), within the scope of the settings, and
+/// gives those their stand-ins that the shelf has some for. `palette`: of the model. The plan is
+/// valid as long as the models of poses. Throws Error(InvalidArgument) for a
 /// scope that names no object.
-BuildPlan plan_build(const Model& model, const std::vector<ObjectIndex>& order,
+BuildPlan plan_build(Model& model, const std::vector<ObjectIndex>& order,
                      const StandInSurroundings& surroundings, const StoredStandIns& shelf,
-                     const BuildSettings& settings);
+                     MaterialPalette& palette, const BuildSettings& settings);
 
 }  // namespace lodestone::hierarchy

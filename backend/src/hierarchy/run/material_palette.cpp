@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/run/material_palette.h"
 
+#include <algorithm>
 #include <iterator>
 #include <optional>
 
@@ -25,19 +26,22 @@ void MaterialPalette::renumber(const std::vector<ObjectIndex>& order) {
         std::make_move_iterator(model_.materials.end()));
     model_.materials.resize(own_);
     std::vector<std::optional<uint32_t>> numbers(added.size());
-    for (const ObjectIndex index : order) {
-        for (Representation& level : model_.objects[index].representations) {
-            for (uint32_t& material : level.materials) {
-                if (material < own_)
-                    continue;
-                std::optional<uint32_t>& number = numbers.at(material - own_);
-                if (!number) {
-                    number = static_cast<uint32_t>(model_.materials.size());
-                    model_.materials.push_back(std::move(added[material - own_]));
-                }
-                material = *number;
-            }
+    const auto use = [&](uint32_t& material) {
+        if (material < own_)
+            return;
+        std::optional<uint32_t>& number = numbers.at(material - own_);
+        if (!number) {
+            number = static_cast<uint32_t>(model_.materials.size());
+            model_.materials.push_back(std::move(added[material - own_]));
         }
+        material = *number;
+    };
+    for (const ObjectIndex index : order) {
+        Object& object = model_.objects[index];
+        for (Representation& level : object.representations)
+            std::for_each(level.materials.begin(), level.materials.end(), use);
+        for (SourceMaterial& source : object.sources)
+            use(source.material);
     }
 }
 

@@ -114,6 +114,7 @@ void add_moved_copy(Model& model, const MovedCopy& moved, const MeshSource& sour
     Object& to = model.objects[moved.index];
     if (from.attributes)
         to.attributes = measure::transformed(*from.attributes, moved.place);
+    to.sources = from.sources;
     for (size_t i = 1; i < from.representations.size(); ++i) {
         Representation level = from.representations[i];
         level.payload = moved_payload(level, moved.place, source);

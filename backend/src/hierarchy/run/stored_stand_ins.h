@@ -2,6 +2,7 @@
 // Stored stand-ins: those that a store has already, found by what they were built from.
 #pragma once
 
+#include "hierarchy/run/changed_finishes.h"
 #include "hierarchy/run/material_palette.h"
 #include "segment/store.h"
 
@@ -11,19 +12,24 @@ namespace lodestone::hierarchy {
 
 class StoredStandIns {
 public:
-    /// Empty with `ignore`, and where the store cannot be read or is of another version: then
+    /// The store must outlive it. Empty with `ignore`, and where the store cannot be read or is of another version: then
     /// everything is built again.
     StoredStandIns(const segment::Store& store, bool ignore);
 
-    /// The stored object of this build hash; null when there is none, or a file of it is gone.
-    const Object* find(Hash build_hash) const;
-
-    /// Takes over the stand-ins of what find() gave; the finest representation stays ours.
-    void adopt(Object& object, const Object& stored, MaterialPalette& palette) const;
+    /// Gives an object the stand-ins of this build hash; the finest representation stays ours.
+    /// Where materials have other finishes, so have those of its stand-ins, which are then what a
+    /// build would make. What it places must have its own stand-ins already. False when there are
+    /// none, a file of them is gone, or materials that were one are now two, or the other way.
+    bool adopt(Model& model, ObjectIndex index, Hash build_hash, MaterialPalette& palette) const;
 
 private:
+    void take(const Object& from, Object& object, MaterialPalette& palette) const;
+    bool take(const Object& from, const ChangedFinishes& changed, Model& model, ObjectIndex index,
+              MaterialPalette& palette) const;
+
+    const segment::Store& store_;
     std::shared_ptr<const Model> stored_;
-    std::map<Hash, const Object*> by_hash_;
+    std::multimap<Hash, const Object*> by_hash_;
 };
 
 }  // namespace lodestone::hierarchy

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "measure/visible/principal_axes.h"
 #include "measure/visible/stratified_points.h"
+#include "model/finish.h"
 
 #include <algorithm>
 #include <atomic>
@@ -48,16 +49,10 @@ constexpr uint32_t kMostTags = uint32_t{1} << 24u;
 struct ShownSums {
     glm::dvec3 color{0.0};
     glm::dvec3 emission{0.0};
-    double roughness = 0;
-    double metallic = 0;
-    double specular = 0;
 
     void add(const ray::SurfaceAppearance& shown, double weight) {
         color += weight * shown.color;
         emission += weight * shown.emission;
-        roughness += weight * shown.roughness;
-        metallic += weight * shown.metallic;
-        specular += weight * shown.specular;
     }
 };
 
@@ -255,18 +250,21 @@ void add_surface(const Mesh& mesh, const ray::MeshSkin* skin, const VaryingSkin&
     }
     ShownSums sums;
     for (size_t slot = 0; slot < by_slot.size(); ++slot) {
-        if (by_slot[slot] == 0 || varied.slot(slot))
+        if (by_slot[slot] == 0)
             continue;
         const double share = by_slot[slot] / tally.weight;
+        out.shares.push_back({static_cast<uint16_t>(slot), share});
+        if (varied.slot(slot))
+            continue;
         sums.add(
             skin != nullptr ? skin->mean(static_cast<uint16_t>(slot)) : ray::SurfaceAppearance{},
             share);
     }
     out.color = sums.color + tally.varied.color / tally.weight;
     out.emission = sums.emission + tally.varied.emission / tally.weight;
-    out.roughness = sums.roughness + tally.varied.roughness / tally.weight;
-    out.metallic = sums.metallic + tally.varied.metallic / tally.weight;
-    out.specular = sums.specular + tally.varied.specular / tally.weight;
+    set_finish(out, mean_finish(out.shares, [&](uint16_t slot) {
+                   return skin != nullptr ? skin->material(slot) : Material{};
+               }));
 }
 
 }  // namespace
