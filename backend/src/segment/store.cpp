@@ -4,6 +4,7 @@
 #include "base/files.h"
 #include "base/parallel.h"
 #include "format/gltf/glb.h"
+#include "segment/earlier_levels.h"
 #include "segment/store_json.h"
 
 #include <algorithm>
@@ -20,16 +21,44 @@ namespace fs = std::filesystem;
 
 // Taste: a larger number reads larger scenes, and lets a hostile file fill more memory.
 constexpr uint64_t kMostTilesetBytes = uint64_t{1} << 30u;
+// The bytes of the files of earlier levels.
+// Taste: two or three states of a large scene; more keep more of them, on the disk.
+constexpr uint64_t kMostEarlierBytes = uint64_t{256} << 20u;
 // The characters of a file's name before its ending.
 // Law: a hash of 64 bits in hexadecimal digits.
 constexpr size_t kStem = 16;
 
-/// The tileset.json that this process has read last.
-struct RecentTileset {
-    fs::path path;
-    FileState state;
-    std::shared_ptr<const Model> model;
+/// The model of the file of a kind that this process has read last.
+class RecentModel {
+public:
+    /// The model that the file holds now. Safe from several threads.
+    template <typename Read>
+    std::shared_ptr<const Model> get(const fs::path& file, const Read& read) {
+        const FileState state = file_state(file);  // before it is read: never newer than the model
+        const fs::path path = fs::absolute(file);
+        {
+            const std::lock_guard lock(mutex_);
+            if (model_ != nullptr && path_ == path && state_ == state)
+                return model_;
+        }
+        auto model = std::make_shared<const Model>(read(file));
+        const std::lock_guard lock(mutex_);
+        path_ = path;
+        state_ = state;
+        model_ = model;
+        return model;
+    }
+
+private:
+    std::mutex mutex_;
+    fs::path path_;
+    FileState state_;
+    std::shared_ptr<const Model> model_;
 };
+
+Model tileset_in(const fs::path& file) {
+    return model_of_tileset(read_file(file, kMostTilesetBytes));
+}
 
 /// The triangles that viewers of tiles draw for a representation.
 Mesh drawable(const Representation& representation) {
@@ -122,29 +151,33 @@ fs::path Store::tileset() const {
     return folder_ / "tileset.json";
 }
 
+fs::path Store::earlier() const {
+    return folder_ / "earlier.json";
+}
+
 bool Store::exists() const {
     std::error_code error;
     return fs::is_regular_file(tileset(), error);
 }
 
 Model Store::read() const {
-    return model_of_tileset(read_file(tileset(), kMostTilesetBytes));
+    return tileset_in(tileset());
 }
 
 std::shared_ptr<const Model> Store::read_shared() const {
-    static std::mutex mutex;
-    static RecentTileset recent;
-    const FileState state = file_state(tileset());  // before it is read: never newer than the model
-    const fs::path path = fs::absolute(tileset());
-    {
-        const std::lock_guard lock(mutex);
-        if (recent.model != nullptr && recent.path == path && recent.state == state)
-            return recent.model;
+    static RecentModel recent;
+    return recent.get(tileset(), tileset_in);
+}
+
+std::shared_ptr<const Model> Store::read_earlier() const {
+    static RecentModel recent;
+    try {
+        return recent.get(earlier(), [](const fs::path& file) {
+            return model_of_description(read_file(file, kMostTilesetBytes));
+        });
+    } catch (const Error&) {
+        return std::make_shared<const Model>();  // there is none, or it is another version's
     }
-    auto model = std::make_shared<const Model>(read());
-    const std::lock_guard lock(mutex);
-    recent = {path, state, model};
-    return model;
 }
 
 std::shared_ptr<const Mesh> Store::load_mesh(Hash hash) const {
@@ -248,7 +281,6 @@ uint64_t Store::write(const Model& model, const Job& job, StoreUpdate update) co
     bytes += write_pictures(model, job);
     job.check();
 
-    const std::vector<fs::path> unused = unused_files(folder_, files_of(model));
     const std::string previous = exists() ? read_file(tileset(), kMostTilesetBytes) : "";
     const DescriptionText description = description_text(model);
     if (!previous.starts_with(tileset_head(description, update == StoreUpdate::Anything))) {
@@ -256,19 +288,44 @@ uint64_t Store::write(const Model& model, const Job& job, StoreUpdate update) co
         if (text.size() > kMostTilesetBytes)
             fail(Status::Io, "'", tileset().string(), "' would have ", text.size(),
                  " bytes; at most ", kMostTilesetBytes, " are read");
+        bytes += write_earlier(model);  // first, so that nothing that is there is lost
         write_file(tileset(), text);
         bytes += text.size();
     }
-    // Somebody may be reading the previous one.
-    const std::set<std::string> before =
-        unused.empty() ? std::set<std::string>{} : stems_in(previous);
+    const std::vector<fs::path> unused = unused_files(folder_, files_of(model));
+    std::set<std::string> named;
+    if (!unused.empty()) {  // somebody may be reading the previous one
+        named = stems_in(previous);
+        if (file_state(earlier()).bytes > 0)
+            named.merge(stems_in(read_file(earlier(), kMostTilesetBytes)));
+    }
     for (const fs::path& path : unused) {
         std::error_code error;
-        if (!before.contains(path.stem().string()))
+        if (!named.contains(path.stem().string()))
             fs::remove(path, error);
     }
     job.progress(1);
     return bytes;
+}
+
+uint64_t Store::write_earlier(const Model& model) const {
+    std::shared_ptr<const Model> before = std::make_shared<const Model>();
+    if (exists()) {
+        try {
+            before = read_shared();
+        } catch (const Error&) {  // of another version
+        }
+    }
+    const auto bytes_of = [&](const Representation& level) {
+        return file_state(folder_ / file_of(level.summary.hash)).bytes;
+    };
+    const std::string text =
+        described(earlier_levels(model, *before, *read_earlier(), kMostEarlierBytes, bytes_of));
+    const FileState state = file_state(earlier());
+    if (state.bytes == text.size() && read_file(earlier(), kMostTilesetBytes) == text)
+        return 0;
+    write_file(earlier(), text);
+    return text.size();
 }
 
 uint64_t Store::write_pictures(const Model& model, const Job& job) const {

@@ -2,6 +2,7 @@
 // Store: a model on disk, a 3D Tiles 1.1 tileset folder (docs/architecture.md, Store).
 //   tileset.json      the tiles for strangers, and in asset.extras.lodestone all we know, exactly
 //   r/<16 hex>.glb    one representation each, named by content hash
+//   earlier.json      what is known of the levels of what it held before, within a bound
 //   i/<16 hex>.png    one picture each (or .jpg, .exr), likewise
 //   b/<16 hex>.bound  the levels of something that deforms, by which those of each frame are made
 //   lock              held by the one writer
@@ -40,6 +41,10 @@ public:
     /// animation share one. Safe from several threads.
     std::shared_ptr<const Model> read_shared() const;
 
+    /// The objects with stand-ins that the store held before, newest first, without what groups
+    /// place; empty when there are none, or none that can be read. Parsed as read_shared() does.
+    std::shared_ptr<const Model> read_earlier() const;
+
     /// The mesh of a representation by its summary's hash. Throws Error(Io or BadFile).
     /// Safe from several threads.
     std::shared_ptr<const Mesh> load_mesh(Hash hash) const;
@@ -65,14 +70,17 @@ public:
     uint64_t save_bound(Hash bind_hash, const BoundLevels& levels) const;
 
     /// Writes what is missing, then replaces tileset.json if what it says has changed, then removes
-    /// files that neither the new nor the previous tileset.json names. A killed write leaves the
-    /// old store. Representations and pictures that are not resident must be in the store already.
+    /// files that neither the new nor the previous tileset.json names, nor earlier.json: of the
+    /// stand-ins that go, the newest stay. A killed write leaves the old store. Representations and pictures that are not resident must be in the store already.
     /// Returns the bytes written. Throws Error(Io), also when another writer is at work.
     uint64_t write(const Model& model, const Job& job,
                    StoreUpdate update = StoreUpdate::Anything) const;
 
 private:
     std::filesystem::path tileset() const;
+    std::filesystem::path earlier() const;
+    /// Keeps what the previous tileset.json has and the model has not.
+    uint64_t write_earlier(const Model& model) const;
     uint64_t write_pictures(const Model& model, const Job& job) const;
 
     std::filesystem::path folder_;

@@ -322,6 +322,19 @@ std::string tileset_text(const Model& model, const DescriptionText& description)
     return text;
 }
 
+std::string described(const Model& model) {
+    const DescriptionText text = description_text(model);
+    return text.objects + text.view;
+}
+
+Model model_of_description(const std::string& text) {
+    try {
+        return model_of(Json::parse(text));
+    } catch (const Json::exception& error) {
+        fail(Status::BadFile, "no description of a model: ", error.what());
+    }
+}
+
 Model model_of_tileset(const std::string& text) {
     try {
         // Only the asset is ours; the tiles below "root" are for strangers and are not kept.

@@ -39,6 +39,10 @@ inline std::string tileset_text(const Model& model) {
     return tileset_text(model, description_text(model));
 }
 
+/// A description by itself, and what it describes. Throws as model_of_tileset().
+std::string described(const Model& model);
+Model model_of_description(const std::string& text);
+
 /// The model described in a tileset.json; meshes and pictures not resident. Throws Error(BadFile)
 /// saying what is wrong; nothing in the text is trusted.
 Model model_of_tileset(const std::string& text);

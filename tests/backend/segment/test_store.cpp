@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the store: model -> files -> model is identical, nothing outside is trusted, nothing torn.
+// It is over 500 lines, for nearly all of them are about one rich model.
 #include "base/files.h"
 #include "scenes/small_models.h"
 #include "scratch.h"
@@ -46,6 +47,8 @@ Model rich_model() {
         std::make_shared<const Composite>(Composite{{{true, third, 0}, {false, third, 0}}}));
     model.objects[0].representations.back().summary.sealed = true;
     model.objects[0].build_hash = 0x0123456789abcdef;
+    model.objects[0].representations[2].means = {{{0, 1.0 / 3}, {65535, 2.0 / 3}}};
+    model.objects[0].sources = {{0, true}, {0, false}};
     Camera camera;
     camera.name = "far";
     camera.position = {1.0 / 7, 2, 3};
@@ -103,6 +106,11 @@ void expect_same(const Model& a, const Model& b) {
         if (x.attributes && y.attributes) {
             EXPECT_EQ(x.attributes->visible_area, y.attributes->visible_area);
         }
+        ASSERT_EQ(x.sources.size(), y.sources.size());
+        for (size_t slot = 0; slot < x.sources.size(); ++slot) {
+            EXPECT_EQ(x.sources[slot].material, y.sources[slot].material);
+            EXPECT_EQ(x.sources[slot].plain, y.sources[slot].plain);
+        }
         ASSERT_EQ(x.representations.size(), y.representations.size());
         for (size_t lod = 0; lod < x.representations.size(); ++lod) {
             const Representation& r = x.representations[lod];
@@ -116,6 +124,15 @@ void expect_same(const Model& a, const Model& b) {
             EXPECT_EQ(r.summary.bound.box.low, s.summary.bound.box.low);
             EXPECT_EQ(r.summary.cost.triangles, s.summary.cost.triangles);
             EXPECT_EQ(r.materials, s.materials);
+            EXPECT_EQ(s.summary.shape, lod == 0 ? r.summary.shape : 0);
+            ASSERT_EQ(r.means.size(), s.means.size());
+            for (size_t mean = 0; mean < r.means.size(); ++mean) {
+                ASSERT_EQ(r.means[mean].size(), s.means[mean].size());
+                for (size_t share = 0; share < r.means[mean].size(); ++share) {
+                    EXPECT_EQ(r.means[mean][share].slot, s.means[mean][share].slot);
+                    EXPECT_EQ(r.means[mean][share].share, s.means[mean][share].share);
+                }
+            }
             if (r.summary.kind == Kind::Mesh) {
                 EXPECT_EQ(hash_of(r.mesh()), hash_of(s.mesh()));
             } else if (r.summary.kind == Kind::Assembly) {
@@ -433,6 +450,13 @@ TEST(Store, EveryBrokenTilesetIsRefusedWithASentence) {
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["pictures"][0]["width"] = 1e300; }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j.erase("objects"); }));
     EXPECT_TRUE(refused([](nlohmann::json& j) { j["objects"][0]["source_hash"] = "../../etc"; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["objects"][0]["sources"][0][0] = 99; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["objects"][0]["sources"][0][0] = -1; }));
+    EXPECT_TRUE(refused([](nlohmann::json& j) { j["objects"][0]["sources"][0] = 1; }));
+    for (const char* broken : {"[[0]]", "[[65536,1]]", "[[-1,1]]", "[[0,null]]", "[[0,1],[0,1]]"})
+        EXPECT_TRUE(refused([&](nlohmann::json& j) {
+            j["objects"][0]["representations"][2]["means"] = nlohmann::json::parse(broken);
+        })) << broken;
     EXPECT_TRUE(
         refused([](nlohmann::json& j) { j["objects"][0]["representations"][0]["hash"] = "../x"; }));
     EXPECT_TRUE(

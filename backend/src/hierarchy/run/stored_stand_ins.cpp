@@ -6,41 +6,60 @@
 
 namespace lodestone::hierarchy {
 
-StoredStandIns::StoredStandIns(const segment::Store& store, bool ignore) : store_(store) {
-    if (ignore || !store.exists())
+StoredStandIns::StoredStandIns(const segment::Store& store, bool ignore)
+    : store_(store), ignore_(ignore || !store.exists()) {
+    if (ignore_)
         return;
     try {
-        stored_ = store.read_shared();
+        list(store.read_shared());
     } catch (const Error&) {
-        return;
+        ignore_ = true;
     }
-    for (const Object& object : stored_->objects) {
-        if (object.build_hash != 0 && store.has_stand_ins(object))
-            by_hash_.emplace(object.build_hash, &object);
+}
+
+void StoredStandIns::list(const std::shared_ptr<const Model>& model) const {
+    models_.push_back(model);
+    for (const Object& object : model->objects) {
+        if (object.build_hash != 0 && store_.has_stand_ins(object))
+            by_hash_.emplace(object.build_hash, StoredObject{model.get(), &object});
     }
 }
 
 bool StoredStandIns::adopt(Model& model, ObjectIndex index, Hash build_hash,
                            MaterialPalette& palette) const {
+    if (ignore_)
+        return false;
+    if (adopt_listed(model, index, build_hash, palette))
+        return true;
+    if (models_.size() > 1)
+        return false;
+    list(store_.read_earlier());
+    return adopt_listed(model, index, build_hash, palette);
+}
+
+bool StoredStandIns::adopt_listed(Model& model, ObjectIndex index, Hash build_hash,
+                                  MaterialPalette& palette) const {
     const Object& object = model.objects[index];
     const auto [first, last] = by_hash_.equal_range(build_hash);
     for (auto at = first; at != last; ++at) {
-        if (at->second->source_hash == object.source_hash) {
-            take(*at->second, model.objects[index], palette);
+        if (at->second.object->source_hash == object.source_hash) {
+            take(at->second, model.objects[index], palette);
             return true;
         }
     }
     for (auto at = first; at != last && !object.deforms; ++at) {
-        const auto changed = ChangedFinishes::between(*stored_, *at->second, model, index);
-        if (changed && take(*at->second, *changed, model, index, palette))
+        const auto changed =
+            ChangedFinishes::between(*at->second.model, *at->second.object, model, index);
+        if (changed && take(at->second, *changed, model, index, palette))
             return true;
     }
     return false;
 }
 
-void StoredStandIns::take(const Object& from, Object& object, MaterialPalette& palette) const {
+void StoredStandIns::take(const StoredObject& stored, Object& object, MaterialPalette& palette) {
+    const Object& from = *stored.object;
     const auto number_of = [&](uint32_t material) {
-        return palette.index_of(stored_->materials.at(material));
+        return palette.index_of(stored.model->materials.at(material));
     };
     object.build_hash = from.build_hash;
     object.bind_hash = from.bind_hash;
@@ -54,8 +73,9 @@ void StoredStandIns::take(const Object& from, Object& object, MaterialPalette& p
     }
 }
 
-bool StoredStandIns::take(const Object& from, const ChangedFinishes& changed, Model& model,
+bool StoredStandIns::take(const StoredObject& stored, const ChangedFinishes& changed, Model& model,
                           ObjectIndex index, MaterialPalette& palette) const {
+    const Object& from = *stored.object;
     std::vector<Representation> levels(from.representations.begin() + 1,
                                        from.representations.end());
     try {  // their files are others, for they hold the materials, too
@@ -72,10 +92,10 @@ bool StoredStandIns::take(const Object& from, const ChangedFinishes& changed, Mo
     for (const SourceMaterial& source : from.sources)
         object.sources.push_back({changed.number_of(source.material), source.plain});
     for (Representation& level : levels) {
-        const Representation stored = level;
+        const Representation before = level;
         for (size_t slot = 0; slot < level.materials.size(); ++slot)
             level.materials[slot] = palette.index_of(
-                changed.changed(stored, slot, stored_->materials.at(stored.materials[slot])));
+                changed.changed(before, slot, stored.model->materials.at(before.materials[slot])));
         summarize(level, model);
         object.representations.push_back(std::move(level));
     }

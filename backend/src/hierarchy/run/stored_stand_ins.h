@@ -16,20 +16,32 @@ public:
     /// everything is built again.
     StoredStandIns(const segment::Store& store, bool ignore);
 
-    /// Gives an object the stand-ins of this build hash; the finest representation stays ours.
+    /// Gives an object the stand-ins of this build hash, or those that the store held before; the finest representation stays ours.
     /// Where materials have other finishes, so have those of its stand-ins, which are then what a
     /// build would make. What it places must have its own stand-ins already. False when there are
     /// none, a file of them is gone, or materials that were one are now two, or the other way.
     bool adopt(Model& model, ObjectIndex index, Hash build_hash, MaterialPalette& palette) const;
 
 private:
-    void take(const Object& from, Object& object, MaterialPalette& palette) const;
-    bool take(const Object& from, const ChangedFinishes& changed, Model& model, ObjectIndex index,
-              MaterialPalette& palette) const;
+    /// An object of the store, and the model that it is in.
+    struct StoredObject {
+        const Model* model;
+        const Object* object;
+    };
+    using StoredObjects = std::multimap<Hash, StoredObject>;  // by build hash
+
+    void list(const std::shared_ptr<const Model>& model) const;
+    bool adopt_listed(Model& model, ObjectIndex index, Hash build_hash,
+                      MaterialPalette& palette) const;
+    static void take(const StoredObject& from, Object& object, MaterialPalette& palette);
+    bool take(const StoredObject& from, const ChangedFinishes& changed, Model& model,
+              ObjectIndex index, MaterialPalette& palette) const;
 
     const segment::Store& store_;
-    std::shared_ptr<const Model> stored_;
-    std::multimap<Hash, const Object*> by_hash_;
+    bool ignore_;
+    /// Read when they are asked for; not safe from several threads.
+    mutable std::vector<std::shared_ptr<const Model>> models_;
+    mutable StoredObjects by_hash_;
 };
 
 }  // namespace lodestone::hierarchy

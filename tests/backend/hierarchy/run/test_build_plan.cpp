@@ -3,6 +3,7 @@
 // changed. What is taken over is what a build from scratch makes.
 #include "base/files.h"
 #include "hierarchy/hierarchy_build.h"
+#include "hierarchy/run/build_plan.h"
 #include "scenes/small_models.h"
 #include "scenes/with_rays.h"
 #include "scratch.h"
@@ -252,4 +253,106 @@ TEST_F(BuildPlans, TwoMaterialsThatBecomeOneOrOneThatBecomesTwoAreBuiltAgain) {
     summarize_leaves(apart);
     EXPECT_GT(built_after(before, apart), 0u);
     EXPECT_GT(built_after(apart, before), 0u);
+}
+
+namespace {
+
+Model with_place() {
+    Model model = village();
+    for (Object& object : model.objects) {
+        if (object.name != "block")
+            continue;
+        auto own = std::make_shared<Assembly>(object.representations[0].assembly());
+        own->placements[1].transform.offset.x += 0.5;
+        object.representations[0].payload = std::shared_ptr<const Assembly>(own);
+    }
+    return model;
+}
+
+Model with_vertex() {
+    Model model = village();
+    Representation& finest = model.objects[0].representations[0];
+    auto mesh = std::make_shared<Mesh>(finest.mesh());
+    mesh->positions[0].z += 0.25f;
+    finest.payload = std::shared_ptr<const Mesh>(mesh);
+    summarize(finest, model);
+    return model;
+}
+
+}  // namespace
+
+TEST_F(BuildPlans, GoingBackToAnEarlierMeshPlaceOrMaterialBuildsNothing) {
+    const fs::path folder = scratch("undo");
+    const std::vector<Model> states{village(), with_vertex(), with_place(),
+                                    with_material("wall",
+                                                  [](Material& m) {
+                                                      m.base_color = {0.1, 0.2, 0.3};
+                                                  }),
+                                    with_material("red", [](Material& m) { m.roughness = 1; })};
+    std::vector<Model> made = states;
+    for (Model& model : made)
+        build_in(model, folder);
+    for (size_t i : {0, 1, 2, 3, 4, 2, 0}) {
+        Model again = states[i];
+        EXPECT_EQ(build_in(again, folder).built, 0u) << i;
+        expect_same_levels(again, made[i]);
+    }
+}
+
+TEST_F(BuildPlans, AMovedObjectBuildsOnlyTheGroupsAboveIt) {
+    const fs::path folder = scratch("moved_one");
+    Model first = village();
+    build_in(first, folder);
+    Model moved = with_place();
+    EXPECT_EQ(build_in(moved, folder).built, 2u);  // "block" and "village"
+}
+
+TEST_F(BuildPlans, AnEarlierStateThatIsDamagedIsBuiltAgain) {
+    const fs::path folder = scratch("damaged_undo");
+    Model first = village();
+    build_in(first, folder);
+    Model second = with_vertex();
+    build_in(second, folder);
+    for (const char* broken : {"", "{", "[]", R"({"format":3})"}) {
+        write_file(folder / "earlier.json", broken);
+        Model again = village();
+        EXPECT_GT(build_in(again, folder).built, 0u) << broken;
+        expect_same_levels(again, first);
+        Model other = with_vertex();
+        EXPECT_EQ(build_in(other, folder).built, 0u) << broken;
+    }
+}
+
+TEST_F(BuildPlans, NineHundredEqualCollectionsAreMeasuredOnce) {
+    constexpr size_t kCollections = 912;
+    Model model;
+    const ObjectIndex ball = models::add_leaf(model, "ball", shapes::sphere(0.5, 2));
+    std::vector<Placement> all;
+    for (size_t i = 0; i < kCollections; ++i) {
+        const auto at = static_cast<double>(i);
+        const std::string name = std::to_string(i);
+        all.push_back({models::add_group(model, name,
+                                         {{ball, models::moved(10 * at, 0, 0), "left"},
+                                          {ball, models::moved(10 * at + 2, 1, 0), "right"}}),
+                       Affine{}, name});
+    }
+    model.root = models::add_group(model, "all", all);
+    const std::vector<ObjectIndex> order = bottom_up(model);
+    summarize_assemblies(model, order);
+    const segment::Store store(scratch("equal"));
+    const hierarchy::StoredStandIns shelf(store, false);
+    const hierarchy::StandInSurroundings around =
+        hierarchy::surroundings_of(model, order,
+                                   [](const Representation& one) {
+                                       return std::get<std::shared_ptr<const Mesh>>(one.payload);
+                                   },
+                                   {});
+    hierarchy::MaterialPalette palette(model);
+    const hierarchy::BuildPlan plan =
+        hierarchy::plan_build(model, order, around, shelf, palette, {});
+    EXPECT_EQ(plan.tasks.size(), 3u);  // the ball, one collection, and all of them
+    size_t moved = 0;
+    for (const hierarchy::BuildTask& task : plan.tasks)
+        moved += task.moved.size();
+    EXPECT_EQ(moved, kCollections - 1);
 }
