@@ -6,24 +6,39 @@
 #include "solids/solid_replacement.h"
 #include "solids/stand_in_material.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace lodestone::hierarchy {
 namespace {
 
-/// The finest's attributes by many more rays. What more rays have measured serves those who ask for
-/// fewer.
+/// The change of a centroid that ends its rays, in parts of the radius of gyration, for a solid of
+/// that error: nobody sees a small part of the pixel that its error is when it is used.
+double settled_at(double error, double least, const Attributes& of) {
+    // The part of the error.
+    // Taste: a larger part lets solids stand beside their place, by so much of a pixel.
+    constexpr double kOfError = 0.01;
+    const glm::dmat3& moments = of.moments;
+    const double square = (moments[0][0] + moments[1][1] + moments[2][2]) / of.visible_area;
+    return square > 0 ? std::max(least, kOfError * error / std::sqrt(square)) : least;
+}
+
+/// The finest's attributes by many more rays. What has been measured better serves those who ask
+/// for less.
 class SureAttributes {
 public:
     explicit SureAttributes(const MeasuredFinest& finest) : finest_(finest) {}
 
     /// By so many rays or more, or until half of them agree with all (`settled`).
     const Attributes& by(uint64_t rays, double settled, const Job& job) {
-        if (rays_ < rays) {
+        if (rays_ < rays || settled_ > settled) {
             measure::VisibleOptions options = finest_.visible_options(rays);
             options.settled = settled;
             attributes_ = measure::measure_visible(finest_.mesh, finest_.sampler(), finest_.skin,
                                                    options, {}, finest_.cast, job)
                               .attributes;
             rays_ = rays;
+            settled_ = settled;
         }
         return attributes_;
     }
@@ -32,10 +47,11 @@ private:
     const MeasuredFinest& finest_;
     Attributes attributes_;
     uint64_t rays_ = 0;
+    double settled_ = 0;
 };
 
-void settle_composite(StandInCandidate& candidate, SureAttributes& sure, double floor,
-                      const Job& job) {
+void settle_composite(StandInCandidate& candidate, const MeasuredFinest& finest,
+                      SureAttributes& sure, double floor, const Job& job) {
     // Solids that hide each other: 32,768 rays know their centroid to 0.1 % of the radius of
     // gyration, 262,144 to 0.04 %.
     // Taste: a larger number knows it better, in time and memory in proportion.
@@ -45,8 +61,9 @@ void settle_composite(StandInCandidate& candidate, SureAttributes& sure, double 
     // The same rays for all (7 MB): making them takes as long as asking them once.
     static const solids::VisibleSolids kVisible(kRaysOfMany, kSeedOfMany);
     Composite composite = candidate.composite();
-    solids::settle_composite(composite, sure.by(kRaysOfMany, solids::kSettledComposite, job), floor,
-                             kVisible, job);
+    const double settled =
+        settled_at(candidate.error, solids::kSettledComposite, finest.attributes);
+    solids::settle_composite(composite, sure.by(kRaysOfMany, settled, job), floor, kVisible, job);
     candidate.payload = std::make_shared<const Composite>(std::move(composite));
 }
 
@@ -68,9 +85,9 @@ void settle_primitive(StandInCandidate& candidate, const MeasuredFinest& finest,
         primitive = now.primitive;
         material.alpha = solids::surface_alpha(now.opacity);
     } else {
-        primitive =
-            solids::settled(primitive, finest.attributes,
-                            sure.by(solids::kRaysOfSolid * finest.rays, solids::kSettled, job));
+        const double settled = settled_at(candidate.error, solids::kSettled, finest.attributes);
+        primitive = solids::settled(primitive, finest.attributes,
+                                    sure.by(solids::kRaysOfSolid * finest.rays, settled, job));
     }
     const double low = solids::reach_of(primitive, box).low;
     if (stands || low < floor)
@@ -91,7 +108,7 @@ void settle_solids(std::span<StandInCandidate> candidates, const MeasuredFinest&
         if (candidate.error >= finest.size)
             continue;
         if (composite)
-            settle_composite(candidate, sure, floor, job);
+            settle_composite(candidate, finest, sure, floor, job);
         else if (finest.attributes.relative_error > 0)
             settle_primitive(candidate, finest, sure, floor, job);
     }
