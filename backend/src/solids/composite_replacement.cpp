@@ -24,7 +24,7 @@ namespace {
 
 // The solids of levels.
 // Taste: each level has about half of the error of the one before, and twice the solids.
-constexpr std::array<size_t, 4> kCounts{4, 8, 16, 32};
+constexpr std::array<size_t, 6> kCounts{4, 8, 16, 32, 64, 128};
 // The rounds in which shells get their opacity.
 // Taste: more come nearer to the wanted area, more slowly.
 constexpr int kClearRounds = 4;
@@ -91,9 +91,9 @@ ClusterSamples all_of(const Mesh& mesh, const ray::MeshScene& scene, const ray::
 /// The solid of a cluster. A cluster is a patch of surface, so what its whole is part of makes it
 /// neither sparse nor two heaps: if it is refused as one kind of solid it gets the other, or the
 /// ball of its area.
-Solid solid_of(const Attributes& attributes) {
+Solid solid_of(const Attributes& attributes, bool boxes = false) {
     Solid out;
-    const bool preferred = boxlike(attributes);
+    const bool preferred = boxes || boxlike(attributes);
     for (const bool box : {preferred, !preferred}) {
         const auto found = box ? fit_box(attributes, Bound{}) : fit_ellipsoid(attributes, Bound{});
         if (!found)
@@ -339,7 +339,7 @@ std::vector<ClusteredComposite> composites(const Mesh& mesh, const ray::SkinPtr&
             continue;
         ClusteredComposite level;
         for (const SampleCluster& cluster : clusters.all()) {
-            level.composite.solids.push_back(solid_of(cluster.attributes));
+            level.composite.solids.push_back(solid_of(cluster.attributes, options.boxes));
             level.composite.solids.back().slot = static_cast<uint16_t>(level.clusters.size());
             level.attributes.push_back(cluster.attributes);
             level.clusters.push_back(cluster.number);

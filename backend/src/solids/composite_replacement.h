@@ -24,6 +24,7 @@ struct ClusteredComposite {
 struct CompositeOptions {
     uint64_t seed = 1;
     uint32_t rays = 32768;  // in the last rounds of matching; an eighth in the rounds before
+    bool boxes = false;     // boxes alone, where there is one for a cluster
     bool shape = true;      // match centroid and variances of the whole, too, not only its area
     int rounds = 12;        // the most rounds of matching
     /// The rays by which settle_composite() measures mesh and solids, with `shape`; 0: it is not
@@ -34,7 +35,7 @@ struct CompositeOptions {
     uint32_t samples = 8192;  // the rays that find the clustered points
 };
 
-/// Composites of at most 4, 8, 16 and 32 parts, those within `least` and `most` (fewer levels where
+/// Composites of at most 4, 8, 16, 32, 64 and 128 parts, those within `least` and `most` (fewer levels where
 /// clusters cannot be split). They are nested: one cluster of each level is split into two for the
 /// next part. The largest cluster (area times variance) is split in two by place and color
 /// (2-means). Parts hide parts of each other, so each level is matched again as a whole, by rays:

@@ -7,6 +7,7 @@
 #include "ray/mesh_scene.h"
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace lodestone::measure {
@@ -79,6 +80,12 @@ public:
     /// size at which they agree (0: all sizes), or the error of of() if the stand-in covers much
     /// less in all.
     double gap_error(const TracedPictures& stand_in, const ray::SkinPtr& skin, double off) const;
+    /// The color of each of so many sides of an opaque, matte stand-in (`side_of`: by triangle)
+    /// with which it shows about as much light as the finest in each pixel of 15 by 15 a picture:
+    /// gaps and their shadows darken it. The fourth number is the light that falls on the side; 0:
+    /// no picture shows it. `stand_in` was traced in any colors.
+    std::vector<glm::dvec4> side_colors(const TracedPictures& stand_in,
+                                        std::span<const uint32_t> side_of, size_t sides) const;
     /// The agreement without the error: coverage and light alone, which is faster.
     PictureAgreement brightness_of(const TracedPictures& stand_in, const ray::SkinPtr& skin) const;
 

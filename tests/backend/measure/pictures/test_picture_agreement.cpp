@@ -178,3 +178,42 @@ TEST_F(Agreements, WhatIsFartherBehindIsNoGapWhereItLooksTheSame) {
     EXPECT_EQ(AgreementReference(Mesh{}, same, 1).gap_error(reference.trace(half, same), same, 0.1),
               0);
 }
+
+TEST_F(Agreements, SidesOfTheSameSurfaceGetItsColors) {
+    // A cube whose sides are of six colors; of the white stand-in each side gets its own.
+    Mesh cube = shapes::box({0, 0, 0}, {1, 1, 1});
+    cube.slots.clear();
+    std::vector<Material> materials(6);
+    std::vector<uint32_t> side_of;
+    for (size_t i = 0; i < cube.triangles.size(); ++i) {
+        side_of.push_back(static_cast<uint32_t>(i / 2));
+        cube.slots.push_back(static_cast<uint16_t>(i / 2));
+    }
+    for (size_t side = 0; side < 6; ++side)
+        materials[side].base_color = {0.1 * (1.0 + static_cast<double>(side)), 0.5, 0};
+    const AgreementReference reference(cube, skin(materials), 1, AgreementReference::kCoarseSide);
+    Mesh plain_cube = cube;
+    plain_cube.slots.clear();
+    const auto colors = reference.side_colors(reference.trace(plain_cube, plain(0.8)), side_of, 6);
+    ASSERT_EQ(colors.size(), 6u);
+    size_t seen = 0;
+    for (size_t side = 0; side < 6; ++side) {
+        if (!(colors[side].w > 0))
+            continue;
+        ++seen;
+        EXPECT_NEAR(colors[side].x, materials[side].base_color.x, 1e-5);
+        EXPECT_NEAR(colors[side].y, 0.5, 1e-5);
+        EXPECT_NEAR(colors[side].z, 0, 1e-9);
+    }
+    EXPECT_GE(seen, 3u);  // pictures are taken along axes, not from both of their ends
+}
+
+TEST_F(Agreements, NothingSendsNoLightToSides) {
+    const Mesh cube = shapes::box({0, 0, 0}, {1, 1, 1});
+    const std::vector<uint32_t> one_side(cube.triangles.size(), 0);
+    const AgreementReference nothing({}, plain(0.5), 1);
+    EXPECT_EQ(nothing.side_colors(nothing.trace(cube, plain(0.5)), one_side, 1),
+              std::vector<glm::dvec4>{glm::dvec4(0.0)});
+    const AgreementReference reference(cube, plain(0.5), 1, AgreementReference::kCoarseSide);
+    EXPECT_TRUE(reference.side_colors(reference.trace({}, plain(0.5)), {}, 0).empty());
+}
