@@ -37,6 +37,14 @@ Mesh without_hidden(const Mesh& mesh, const std::vector<uint8_t>& seen,
     return shell;
 }
 
+/// The first of numbers that fall by `ratio`, at most `first`, so that one of them is `sure`.
+size_t first_above(size_t sure, size_t first, double ratio) {
+    auto out = static_cast<double>(sure);
+    while (out > 0 && out / ratio <= static_cast<double>(first))
+        out /= ratio;
+    return static_cast<size_t>(std::ceil(out));
+}
+
 /// The crowd in a group: leaves and the like where that is what its children are made of, else the
 /// children.
 prune::Crowd crowd_in(const Mesh& mesh, const std::vector<uint32_t>& occurrence) {
@@ -128,6 +136,11 @@ GroupLimits::GroupLimits(OpenedGroup& group, const FlattenedGroup& reference,
     whole.pays = [this](double bytes, double error) { return pays(bytes, error); };
     first_ = std::min(shell_.triangles.size(), triangles_for(whole.most, whole.uses, costs));
     limits_.level_ratio = settings.level_ratio;
+    // However coarse the children are, one mesh of so many triangles costs less.
+    const size_t sure = triangles_for(
+        children_.least() - static_cast<double>(costs.occurrence_bytes), whole.uses, costs);
+    if (sure >= kFewestTriangles && sure < first_)
+        first_ = first_above(sure, first_, settings.level_ratio);
     limits_.targets = targets_of(shell_.triangles.size() + 1, first_, settings.level_ratio);
     const auto fifth =
         static_cast<size_t>(kCollapsed * static_cast<double>(shell_.triangles.size()));
@@ -174,6 +187,10 @@ void GroupLimits::keep_useful(std::vector<StandInCandidate>& candidates) const {
         else
             candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(i));
     }
+    // Where all of the group is less than a pixel there is a nearer one that does not cost much.
+    const double diagonal = glm::length(limits_.whole.bound.box.size());
+    while (candidates.size() > 1 && candidates.back().error > diagonal)
+        candidates.pop_back();
 }
 
 }  // namespace lodestone::hierarchy

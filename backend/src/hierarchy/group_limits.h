@@ -22,6 +22,8 @@ public:
     ChildCosts(OpenedGroup& group, double error, const Job& job);
 
     double bytes() const { return steps_.front().bytes; }
+    /// Those of the coarsest children.
+    double least() const { return steps_.back().bytes; }
     /// The error from which on they cost no more than `bytes`; a step too large rather than too
     /// small.
     double cheaper_from(double bytes) const;
@@ -45,7 +47,8 @@ public:
     GroupLimits& operator=(const GroupLimits&) = delete;
 
     const ProposalLimits& limits() const { return limits_; }
-    /// Drops candidates that do not pay beside others and beside the children.
+    /// Drops candidates that do not pay beside others and beside the children, and those that are
+    /// farther off than the group is large, as long as there is another.
     void keep_useful(std::vector<StandInCandidate>& candidates) const;
 
 private:

@@ -140,7 +140,7 @@ void propose_composites(ProposalRound& round) {
     // Taste: a larger number tries composites for fewer things.
     constexpr size_t kFewest = 4;
     const ReplacedObject& whole = round.limits.whole;
-    if (round.finest.options.environment || whole.ground)
+    if (round.finest.options.environment || whole.ground || round.painted)
         return;
     const double solids = round.by_pictures ? kSolidsByPictures : kSolidsByDistance;
     const double dearer = solids * static_cast<double>(whole.costs.primitive_bytes) *

@@ -2,11 +2,13 @@
 #include "hierarchy/proposers/primitive_solids.h"
 
 #include "hierarchy/evaluators/distance_error.h"
+#include "hierarchy/evaluators/patch_error.h"
 #include "solids/keep_on_floor.h"
 #include "solids/solid_replacement.h"
 #include "solids/stand_in_material.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace lodestone::hierarchy {
@@ -32,6 +34,9 @@ void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& boun
             candidate.state = CandidateState::Unproven;
             measure_primitive(candidate, finest, nearest, job);
             nearest = std::min(nearest, candidate.error);
+            // Beside a crowd a solid is near in space and looks different: that must not end levels.
+            if (finest.options.group && std::isfinite(candidate.error))
+                prove(candidate, finest, std::numeric_limits<double>::infinity(), job);
         }
         candidates.push_back(std::move(candidate));
     };
@@ -72,6 +77,8 @@ void propose_near_solids(ProposalRound& round) {
 
 void propose_primitives(ProposalRound& round) {
     if (round.finest.options.environment)
+        return;
+    if (round.painted)
         return;
     if (!round.by_pictures) {
         round.candidates.insert(round.candidates.end(), round.near_solids.begin(),

@@ -73,7 +73,8 @@ struct ProposalRound {
     prune::Crowd crowd;  // empty too where looking for it does not pay
     /// Distances tell little of what is seen through, or is a crowd: pictures compare its solids.
     bool by_pictures = false;
-    bool pruned = false;  // the crowd's parts are worth thinning out
+    bool pruned = false;   // the crowd's parts are worth thinning out
+    bool painted = false;  // painted boxes were proposed
     /// A box and an ellipsoid, by distance: levels that are no nearer are no use. They are no
     /// candidates before it is known that pictures need not compare them.
     std::vector<StandInCandidate> near_solids;

@@ -4,6 +4,7 @@
 #include "hierarchy/proposers/composite_solids.h"
 #include "hierarchy/proposers/environment_stand_ins.h"
 #include "hierarchy/proposers/measured_levels.h"
+#include "hierarchy/proposers/painted_boxes.h"
 #include "hierarchy/proposers/primitive_solids.h"
 #include "hierarchy/proposers/pruned_levels.h"
 #include "hierarchy/proposers/widened_levels.h"
@@ -18,6 +19,7 @@ constexpr StandInProposer kProposers[] = {
     {"near solids", ProposalStage::All, propose_near_solids},
     {"collapse", ProposalStage::All, propose_levels},
     {"prune", ProposalStage::All, propose_pruned_levels},
+    {"painted boxes", ProposalStage::All, propose_painted_boxes},
     {"solids", ProposalStage::All, propose_primitives},
     {"composites", ProposalStage::All, propose_composites},
     {"environment", ProposalStage::All, propose_environment_stand_ins},
