@@ -1,22 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What crowds cost from afar: `cmake --build build/release --target bench_crowds`, then
-// build/release/tests/bench_crowds [STORE]. Houses of twelve boxes stand 14 m apart in blocks of
+// build/release/tests/bench_crowds [--store FOLDER] [--pictures FOLDER] [--houses NUMBER]. Houses of twelve boxes stand 14 m apart in blocks of
 // 8 x 8, the blocks in towns of 8 x 8, and so on; 16 of them differ. Each city is built (all of its
-// levels, into STORE), then looked at from an oblique angle in which it is 1,000, 100 and 30 pixels
+// levels, into the store), then looked at from an oblique angle in which it is 1,000, 100 and 30 pixels
 // wide. What a picture uses should be bounded by its pixels: (occurrences + solids + triangles /
-// 100) a covered pixel at most 2, and hardly more for ten times as many houses.
+// 100) a covered pixel at most 2, and hardly more for ten times as many houses. Pictures of the cut
+// and of full detail (crowd_pictures.h) are compared: their SSIM, and by how much the cut is
+// brighter on covered pixels. With --houses only cities of so many are looked at, with --pictures
+// the pictures are kept.
 #include "base/clock.h"
 #include "base/random.h"
+#include "base/text.h"
+#include "bench/speed/crowd_pictures.h"
 #include "choose/criterion.h"
 #include "choose/cut.h"
 #include "hierarchy/hierarchy_build.h"
+#include "image/compare_images.h"
 #include "ray/mesh_scene.h"
 #include "scenes/small_models.h"
 #include "segment/store.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 using namespace lodestone;
@@ -26,6 +34,14 @@ namespace {
 constexpr int kHouses = 16;
 constexpr size_t kAlong = 8;  // things along a side of a block
 constexpr double kStep = 14;
+
+constexpr size_t kMostPictured = 10000;  // houses of a city whose pictures are taken
+
+struct CrowdOptions {
+    std::string store;
+    std::string pictures;  // empty: they are not kept
+    size_t houses = 0;     // 0: all cities
+};
 
 struct CityKind {
     size_t houses;
@@ -139,13 +155,14 @@ size_t covered_pixels(const Model& model, double pixels) {
     return covered;
 }
 
-void measure_city(const CityKind& kind, const std::string& store) {
+void measure_city(const CityKind& kind, const CrowdOptions& options) {
+    const segment::Store store(options.store);
     Model model = city(kind);
     Problems problems;
     hierarchy::BuildSettings settings;
     settings.rebuild = true;
     const double start = cpu_seconds();
-    hierarchy::build_hierarchy(model, segment::Store(store), settings, problems, {});
+    hierarchy::build_hierarchy(model, store, settings, problems, {});
     const double built = cpu_seconds() - start;
     for (const double pixels : {1000.0, 100.0, 30.0}) {
         const Bound& bound = model.objects[model.root].bound();
@@ -160,12 +177,36 @@ void measure_city(const CityKind& kind, const std::string& store) {
                 ++solids;
         }
         const size_t covered = covered_pixels(model, pixels);
+        std::string looks = "- | -";
+        if (kind.houses <= kMostPictured) {
+            View fine = view_of(bound, pixels);
+            fine.pixel_error = 0;
+            const auto side = static_cast<int>(pixels);
+            const auto picture = [&](const choose::Cut& of) {
+                return bench::picture_of(bench::drawn_mesh(model, of, store), bound, fine.camera,
+                                         side);
+            };
+            const image::Image full = picture(choose::choose_cut(model, fine));
+            const image::Image ours = picture(cut);
+            std::array<char, 64> numbers{};
+            std::snprintf(numbers.data(), numbers.size(), "%.3f | %+.1f",
+                          image::compare(full, ours).ssim,
+                          bench::mean_shown(ours, full) - bench::mean_shown(full, full));
+            looks = numbers.data();
+            if (!options.pictures.empty()) {
+                const std::string name =
+                    text(options.pictures, "/", kind.houses, "_", kind.materials, "_",
+                         static_cast<int>(kind.gap), "_", side);
+                image::write_png(name + "_full.png", full);
+                image::write_png(name + "_cut.png", ours);
+            }
+        }
         const double used = static_cast<double>(cut.chosen.size() + solids) +
                             static_cast<double>(cut.triangles) / 100;
-        std::printf("| %zu | %d | %.0f | %.1f | %.0f | %zu | %zu | %zu | %zu | %.2f |\n",
+        std::printf("| %zu | %d | %.0f | %.1f | %.0f | %zu | %zu | %zu | %zu | %.2f | %s |\n",
                     kind.houses, kind.materials, kind.gap, built, pixels, covered,
                     cut.chosen.size(), solids, static_cast<size_t>(cut.triangles),
-                    used / static_cast<double>(std::max<size_t>(1, covered)));
+                    used / static_cast<double>(std::max<size_t>(1, covered)), looks.c_str());
         std::fflush(stdout);
     }
 }
@@ -173,20 +214,33 @@ void measure_city(const CityKind& kind, const std::string& store) {
 }  // namespace
 
 int main(int count, char** arguments) {
-    const std::string store =
-        count > 1 ? arguments[1]
-                  : (std::filesystem::temp_directory_path() / "lodestone_bench_crowds").string();
+    CrowdOptions options;
+    for (int i = 1; i + 1 < count; i += 2) {
+        const std::string name = arguments[i];
+        if (name == "--store")
+            options.store = arguments[i + 1];
+        else if (name == "--pictures")
+            options.pictures = arguments[i + 1];
+        else if (name == "--houses")
+            options.houses = std::strtoul(arguments[i + 1], nullptr, 10);
+    }
+    const bool own = options.store.empty();
+    if (own)
+        options.store =
+            (std::filesystem::temp_directory_path() / "lodestone_bench_crowds").string();
     std::printf(
         "| houses | materials | gap, m | build, CPU s | pixels wide | covered | "
-        "occurrences | solids | triangles | used a covered pixel (<= 2) |\n"
-        "|---|---|---|---|---|---|---|---|---|---|\n");
+        "occurrences | solids | triangles | used a covered pixel (<= 2) | SSIM | light, 255ths |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     try {
         for (const CityKind& kind :
              {CityKind{1000, 8, 4}, CityKind{10000, 8, 4}, CityKind{10000, 1, 4},
-              CityKind{10000, 8, 0}, CityKind{100000, 8, 4}})
-            measure_city(kind, store);
-        if (count <= 1)
-            std::filesystem::remove_all(store);
+              CityKind{10000, 8, 0}, CityKind{100000, 8, 4}}) {
+            if (options.houses == 0 || options.houses == kind.houses)
+                measure_city(kind, options);
+        }
+        if (own)
+            std::filesystem::remove_all(options.store);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;
