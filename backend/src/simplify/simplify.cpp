@@ -11,9 +11,6 @@
 namespace lodestone::simplify {
 namespace {
 
-// The fit of mode fast; see FitOptions.
-// Fitted: by tests/bench/peers/bench_simplify.py, nine shared models at four targets.
-constexpr FitOptions kFastFit{8, 0.5, 1, 1, 2, false, 0.1f, 0};
 void check_arguments(const Mesh& mesh, std::span<const size_t> targets,
                      const SimplifyOptions& options) {
     check(mesh);

@@ -80,7 +80,8 @@ bool all_differ(const Triangle& t) {
 /// Takes the input's triangles of finite vertices in different places, sorted by the first of their
 /// vertices on the curve, so that data that lie together are read together. `place`: the place of a
 /// vertex on the curve, kNone for none.
-void take_triangles(CollapseMesh& mesh, const Mesh& source, const std::vector<uint32_t>& place) {
+void take_triangles(CollapseMesh& mesh, const Mesh& source, const std::vector<uint32_t>& place,
+                    std::span<const uint16_t> chunks) {
     const auto corners_of = [&](const Triangle& t) {
         return Triangle(place[t.x], place[t.y], place[t.z]);
     };
@@ -103,6 +104,8 @@ void take_triangles(CollapseMesh& mesh, const Mesh& source, const std::vector<ui
         mesh.wedges.resize(count);
     if (!source.slots.empty())
         mesh.slots.resize(count);
+    if (!chunks.empty())
+        mesh.chunks.resize(count);
     for (size_t i = 0; i < source.triangles.size(); ++i) {
         const Triangle& t = source.triangles[i];
         const Triangle corners = corners_of(t);
@@ -114,6 +117,8 @@ void take_triangles(CollapseMesh& mesh, const Mesh& source, const std::vector<ui
             mesh.wedges[at] = t;
         if (!source.slots.empty())
             mesh.slots[at] = source.slots[i];
+        if (!chunks.empty())
+            mesh.chunks[at] = chunks[i];
     }
     mesh.live = count;
 }
@@ -128,6 +133,12 @@ void number(CollapseMesh& mesh, const std::vector<uint32_t>& order, std::vector<
     mesh.ids.resize(mesh.points.size());
     std::iota(mesh.ids.begin() + welded, mesh.ids.end(), next);
     mesh.merged = std::move(first);
+    for (size_t copy = order.size(); copy < mesh.points.size(); ++copy) {
+        mesh.shared.push_back(mesh.ids[copy]);
+        mesh.shared.push_back(mesh.merged[mesh.sources[copy]]);
+    }
+    std::sort(mesh.shared.begin(), mesh.shared.end());
+    mesh.shared.erase(std::unique(mesh.shared.begin(), mesh.shared.end()), mesh.shared.end());
     std::vector<uint32_t> sources = mesh.merged;
     sources.insert(sources.end(), mesh.sources.begin() + welded, mesh.sources.end());
     mesh.merged.resize(sources.size());
@@ -138,7 +149,7 @@ void number(CollapseMesh& mesh, const std::vector<uint32_t>& order, std::vector<
 }  // namespace
 
 CollapseMesh open_collapse_mesh(const Mesh& source, const Job& job, OtherPositions others,
-                                Adjacency* adjacency) {
+                                Adjacency* adjacency, std::span<const uint16_t> chunks) {
     CollapseMesh mesh;
     mesh.has_normals = !source.normals.empty();
     Box3 box;
@@ -170,7 +181,7 @@ CollapseMesh open_collapse_mesh(const Mesh& source, const Job& job, OtherPositio
             mesh.points.push_back((glm::dvec3(source.positions[v]) - mesh.center) / mesh.scale);
         for (const std::vector<glm::vec3>& positions : others)
             mesh.others.push_back({scaled(positions, mesh.scale, order), {}});
-        take_triangles(mesh, source, place);
+        take_triangles(mesh, source, place, chunks);
         mesh.sources = order;
     }
     job.check();
@@ -222,6 +233,8 @@ void compact(CollapseMesh& mesh, Adjacency* adjacency) {
             mesh.wedges[kept] = mesh.wedges[i];
         if (!mesh.slots.empty())
             mesh.slots[kept] = mesh.slots[i];
+        if (!mesh.chunks.empty())
+            mesh.chunks[kept] = mesh.chunks[i];
         ++kept;
     }
     mesh.triangles.resize(kept);
@@ -232,6 +245,8 @@ void compact(CollapseMesh& mesh, Adjacency* adjacency) {
         mesh.wedges.resize(kept);
     if (!mesh.slots.empty())
         mesh.slots.resize(kept);
+    if (!mesh.chunks.empty())
+        mesh.chunks.resize(kept);
     mesh.live = kept;
     uint32_t count = 0;
     uint32_t uses = 0;
@@ -276,6 +291,7 @@ void shrink(CollapseMesh& mesh) {
     mesh.facets.shrink_to_fit();
     mesh.wedges.shrink_to_fit();
     mesh.slots.shrink_to_fit();
+    mesh.chunks.shrink_to_fit();
     for (OtherPose& other : mesh.others) {
         other.points.shrink_to_fit();
         other.facets.shrink_to_fit();

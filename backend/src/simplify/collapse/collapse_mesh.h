@@ -6,6 +6,7 @@
 #include "base/job.h"
 #include "model/mesh.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -31,7 +32,12 @@ struct CollapseMesh {
     std::vector<glm::vec3> facets;    // the area vector (half the cross product) of each triangle
     /// The wedge of each corner; empty when no attribute is carried.
     std::vector<Triangle> wedges;
-    std::vector<uint16_t> slots;     // empty, or one for each triangle
+    std::vector<uint16_t> slots;  // empty, or one for each triangle
+    /// Empty, or the chunk of a large surface that each triangle lies in. Vertices on borders of
+    /// chunks are never moved, and only collapse along borders.
+    std::vector<uint16_t> chunks;
+    /// The first numbers of all vertices that share their position with another one, rising.
+    std::vector<uint32_t> shared;
     std::vector<glm::vec3> normals;  // empty, or one for each wedge
     std::vector<glm::vec2> uvs;      // empty, or one for each wedge
     std::vector<glm::vec4> colors;   // empty, or one for each wedge
@@ -51,6 +57,16 @@ struct CollapseMesh {
 
     bool dead(size_t triangle) const { return triangles[triangle].x == kNone; }
     glm::dvec3 facet_of(const Triangle& t) const { return facet_of(points, t); }
+    /// Whether a border of chunks runs between two triangles.
+    bool parted(uint32_t t0, uint32_t t1) const {
+        return !chunks.empty() && chunks[t0] != chunks[t1];
+    }
+    /// Whether triangles around a vertex lie in several chunks.
+    bool on_border(std::span<const uint32_t> ring) const {
+        return !chunks.empty() && std::any_of(ring.begin(), ring.end(), [&](uint32_t t) {
+            return chunks[t] != chunks[ring.front()];
+        });
+    }
     static glm::dvec3 facet_of(const std::vector<glm::dvec3>& points, const Triangle& t) {
         return 0.5 * glm::cross(points[t.y] - points[t.x], points[t.z] - points[t.x]);
     }
@@ -71,9 +87,11 @@ using OtherPositions = std::span<const std::vector<glm::vec3>>;
 struct Adjacency;
 
 /// Opens a mesh. Leaves out triangles with non-finite vertices and those with two corners at one
-/// position. The result is compact; fills `adjacency`, when given.
+/// position. The result is compact; fills `adjacency`, when given. `chunks`: empty, or the chunk of
+/// each triangle.
 CollapseMesh open_collapse_mesh(const Mesh& mesh, const Job& job, OtherPositions others = {},
-                                Adjacency* adjacency = nullptr);
+                                Adjacency* adjacency = nullptr,
+                                std::span<const uint16_t> chunks = {});
 
 /// Removes dead triangles and unused vertices, keeping the order. Fills `adjacency`, when given,
 /// which takes less time than building it afterwards.

@@ -30,6 +30,9 @@ public:
     bool reduce(size_t target, const Job& job, const std::function<void()>& after_pass,
                 Adjacency& adjacency);
 
+    /// From now on holes and parts may vanish, as without SimplifyOptions::keep_topology.
+    void free_topology() { options_.keep_topology = false; }
+
 private:
     class CollapseBatch;
     /// Makes one batch of collapses; returns how many triangles it removed.

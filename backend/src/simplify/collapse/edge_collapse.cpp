@@ -253,6 +253,9 @@ size_t EdgeCollapser::collapse(const CollapseCandidate& edge) {
     mesh_.points[a] = point;
     for (size_t i = 0; i < others_.size(); ++i)
         mesh_.others[i].points[a] = others_[i];
+    // On borders of chunks it matters which vertex goes.
+    if (!mesh_.chunks.empty() && edges_.held(a, b, effort_) > 0)
+        std::swap(mesh_.ids[a], mesh_.ids[b]);
     mesh_.merged[mesh_.ids[b]] = mesh_.ids[a];
     for (RingCorners* corners : {&around_a_, &around_b_}) {
         for (const RingCorner& corner : *corners) {

@@ -2,6 +2,7 @@
 #include "simplify/collapse/edge_queue.h"
 
 #include "base/parallel.h"
+#include "simplify/collapse/color_kink.h"
 #include "simplify/collapse/edge_neighbors.h"
 
 #include <glm/common.hpp>
@@ -61,46 +62,6 @@ void hold_edge(geometry::Quadric& quadric, const glm::dvec3& edge, const glm::dv
     quadric.yy += weight * square;
     quadric.zz += weight * square;
     quadric.add(edge, -weight);
-}
-
-/// How far the colors on both sides of an edge are from one linear ramp, at the nearer of the two
-/// opposite corners: 0 inside a smooth ramp, up to 1 where paint ends. The colors are compared
-/// roughly as a picture encodes them.
-double color_kink(const CollapseMesh& mesh, const Triangle& t0, const Triangle& w0,
-                  const Triangle& t1, const Triangle& w1, uint32_t a, uint32_t b) {
-    bool one = true;  // in color: no kink
-    for (int corner = 0; corner < 3; ++corner)
-        one = one && mesh.colors[w0[corner]] == mesh.colors[w0.x] &&
-              mesh.colors[w1[corner]] == mesh.colors[w0.x];
-    if (one)
-        return 0;
-    const auto color = [&](uint32_t wedge) {
-        return glm::sqrt(glm::clamp(mesh.colors[wedge], 0.0f, 1.0f));
-    };
-    const glm::dvec3 edge = mesh.points[b] - mesh.points[a];
-    const double square = glm::dot(edge, edge);
-    if (!(square > 0))
-        return 0;
-    glm::vec4 slopes[2];
-    double heights[2] = {0, 0};
-    for (int side = 0; side < 2; ++side) {
-        const Triangle& t = side == 0 ? t0 : t1;
-        const Triangle& w = side == 0 ? w0 : w1;
-        const int at_a = corner_of(t, a);
-        const int at_b = corner_of(t, b);
-        const int opposite = 3 - at_a - at_b;
-        const glm::dvec3 arm = mesh.points[t[opposite]] - mesh.points[a];
-        const double along = glm::dot(arm, edge) / square;
-        heights[side] = glm::length(arm - along * edge);
-        const auto s = static_cast<float>(along);
-        slopes[side] = color(w[opposite]) - (1 - s) * color(w[at_a]) - s * color(w[at_b]);
-    }
-    const double least = std::min(heights[0], heights[1]);
-    if (!(least > 1e-9 * std::sqrt(square)))
-        return 0;
-    const glm::vec4 kink = glm::abs(slopes[0] * static_cast<float>(least / heights[0]) +
-                                    slopes[1] * static_cast<float>(least / heights[1]));
-    return std::min(1.0, static_cast<double>(std::max({kink.x, kink.y, kink.z, kink.w})));
 }
 
 geometry::Quadric quadric_of(const VertexAround& around) {
@@ -171,7 +132,8 @@ void EdgeQueue::visit(const CollapseMesh& mesh, Adjacency& adjacency,
     const VertexNeighbors::FanKind fan = neighbors.find_fan(mesh, ring, vertex);
     const bool closed = fan == VertexNeighbors::FanKind::Closed;
     const double least = kLeastSquare * typical_square_;
-    const bool plain = mesh.slots.empty() && mesh.wedges.empty() && mesh.colors.empty();
+    const bool parted = mesh.on_border(ring);
+    const bool plain = mesh.slots.empty() && mesh.wedges.empty() && mesh.colors.empty() && !parted;
     if (closed && plain) {
         kinds_[vertex] = neighbors.order(ring) ? VertexKind::FreeFan : VertexKind::Free;
         return;
@@ -194,12 +156,14 @@ void EdgeQueue::visit(const CollapseMesh& mesh, Adjacency& adjacency,
     geometry::Quadric quadric;
     std::vector<geometry::Quadric> quadrics(others_.size());
     int open = 0;
+    int between = 0;  // the edges between chunks
     bool holds = false;
     for (const VertexNeighbors::NeighborEdge& n : neighbors.find(mesh, ring, vertex, fan)) {
         const bool two = n.uses == 2;
         if (!two && n.vertex > vertex && borders != nullptr)
             borders->borders.emplace_back(vertex, n.vertex);
         open += !two;
+        between += two && mesh.parted(n.t0, n.t1);
         double weight = two ? 0 : (n.uses == 1 ? kOpen : 1) * options.boundary_weight;
         if (two && !mesh.slots.empty() && mesh.slots[n.t0] != mesh.slots[n.t1])
             weight = options.boundary_weight;
@@ -246,6 +210,15 @@ void EdgeQueue::visit(const CollapseMesh& mesh, Adjacency& adjacency,
     kinds_[vertex] = open == 0   ? VertexKind::Free
                      : open == 2 ? VertexKind::Curve
                                  : VertexKind::Fixed;
+    if (parted) {
+        // Sheets that touch are told apart by their triangles alone, which levels have not in
+        // common.
+        const bool alone =
+            !std::binary_search(mesh.shared.begin(), mesh.shared.end(), mesh.ids[vertex]);
+        kinds_[vertex] =
+            open == 0 && between == 2 && alone ? VertexKind::ChunkCurve : VertexKind::Fixed;
+        return;
+    }
     if (closed && neighbors.order(ring))
         kinds_[vertex] = VertexKind::FreeFan;
 }
@@ -349,7 +322,7 @@ private:
     /// `t1`: kNone where the edge is not shared by exactly two triangles.
     template <typename Take>
     void price(uint32_t a, uint32_t b, uint32_t t0, uint32_t t1, const Take& take) {
-        if (!edges_.allowed(a, b, t1 == kNone, effort_))
+        if (!edges_.allowed(a, b, t1 == kNone || mesh_.parted(t0, t1), effort_))
             return;
         if (edges_.others_.empty()) {
             if (count_ == kWaiting)
@@ -442,6 +415,17 @@ void EdgeQueue::take(const CollapseMesh& mesh, const Adjacency& adjacency, Colla
                 chunk.candidates[at] = candidate;
         }
     });
+}
+
+int EdgeQueue::cheaper_end(uint32_t a, uint32_t b) const {
+    const VertexAround& at_a = own_[a];
+    const VertexAround& at_b = own_[b];
+    const glm::vec3 d = at_b.point - at_a.point;
+    const auto cost = [&](const VertexAround& q) {
+        return d.x * (q.xx * d.x + 2 * q.xy * d.y + 2 * q.xz * d.z) +
+               d.y * (q.yy * d.y + 2 * q.yz * d.z) + d.z * q.zz * d.z;
+    };
+    return cost(at_b) < cost(at_a) ? -1 : 1;
 }
 
 bool EdgeQueue::allowed(uint32_t a, uint32_t b, bool border, CollapseEffort effort) const {

@@ -7,13 +7,16 @@
 #include "simplify/collapse/edge_costs.h"
 #include "simplify/simplify.h"
 
+#include <algorithm>
+
 namespace lodestone::simplify {
 
 class VertexNeighbors;
 
-/// How far a vertex may move. Curve: inside an open border or a chain of non-manifold edges. Fan:
-/// the triangles around it are in order and all turned alike.
-enum class VertexKind : uint8_t { FreeFan, Free, CurveFan, Curve, Fixed };
+/// How far a vertex may move. Curve: inside an open border or a chain of non-manifold edges.
+/// ChunkCurve: inside a border of two chunks; it only moves into the next vertex there. Fan: the
+/// triangles around it are in order and all turned alike.
+enum class VertexKind : uint8_t { FreeFan, Free, CurveFan, Curve, ChunkCurve, Fixed };
 
 /// The means that may be used to reach the target; each includes those before it.
 enum class CollapseEffort : uint8_t {
@@ -79,17 +82,21 @@ public:
     void other_points(const CollapseMesh& mesh, uint32_t a, uint32_t b,
                       std::span<const uint32_t> shared, CollapseEffort effort,
                       std::vector<glm::dvec3>& points) const;
+    /// The end of an edge that stays in its place: -1 a, 1 b, 0 none.
+    int held(uint32_t a, uint32_t b, CollapseEffort effort) const {
+        const VertexKind kind_a = std::max(kinds_[a], VertexKind::Curve);
+        const VertexKind kind_b = std::max(kinds_[b], VertexKind::Curve);
+        if (kind_a != kind_b)
+            return kind_a > kind_b ? -1 : 1;
+        if (kind_a == VertexKind::ChunkCurve)
+            return cheaper_end(a, b);
+        return kind_a == VertexKind::Curve || effort >= CollapseEffort::Topology ? 0 : -1;
+    }
 
 private:
     class EdgePricing;
-    /// The end of an edge that stays in its place: -1 a, 1 b, 0 none.
-    int held(uint32_t a, uint32_t b, CollapseEffort effort) const {
-        const bool fixed_a = kinds_[a] == VertexKind::Fixed;
-        const bool fixed_b = kinds_[b] == VertexKind::Fixed;
-        if (fixed_a == fixed_b && (!fixed_a || effort >= CollapseEffort::Topology))
-            return 0;
-        return fixed_a ? -1 : 1;
-    }
+    /// The end that costs less to collapse into, as held() says it.
+    int cheaper_end(uint32_t a, uint32_t b) const;
     /// The best position; the cost is that of all poses together. `shared`: the triangles on the
     /// edge.
     geometry::CollapseOptimum optimum(const CollapseMesh& mesh, uint32_t a, uint32_t b,

@@ -99,6 +99,8 @@ void move(FitPlaces& places, const Adjacency& adjacency, const std::vector<glm::
             glm::dot(move, move) == 0)
             continue;
         const std::span<const uint32_t> ring = adjacency.around(v);
+        if (mesh.on_border(ring))
+            continue;
         const glm::dvec3 before = mesh.points[v];
         for (int attempt = 0; attempt < 3; ++attempt, move *= 0.5f) {
             mesh.points[v] = before + glm::dvec3(move);
