@@ -941,7 +941,7 @@ typedef struct lds_cut_summary {
     uint64_t occurrences; /* chosen ones, each drawn once */
     uint64_t opened;      /* groups drawn by their children */
     uint64_t originals;   /* occurrences drawn at LOD 0 */
-    uint64_t triangles;   /* triangles as placed */
+    uint64_t triangles;   /* triangles as placed; of large surfaces those that POV-Ray draws */
     uint64_t bytes;       /* the bytes of POV-Ray's memory that they take */
     double largest_error_px;
     const char* largest_error_name;               /* path of placements */

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 
+#include <algorithm>
 #include <map>
 
 namespace lodestone::capi {
@@ -33,28 +34,57 @@ uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position) {
     return cut.cut.chosen[position];
 }
 
-void load_levels(lds_model& model, const choose::Cut& cut, const std::vector<uint32_t>& levels,
-                 const Job& job) {
-    std::map<Hash, std::vector<Representation*>> wanted;
-    for (size_t i = 0; i < levels.size(); ++i) {
-        if (levels[i] == view::kBoxOnly)
-            continue;
-        const choose::CutNode& node = cut.nodes.at(cut.chosen.at(i));
-        Representation& chosen = levels_with(model, node, levels[i])[levels[i]];
-        if (!chosen.resident())
-            wanted[chosen.summary.hash].push_back(&chosen);
-    }
-    if (wanted.empty())
+namespace {
+
+/// The representations that have no mesh yet, by their hashes.
+using MissingMeshes = std::map<Hash, std::vector<Representation*>>;
+
+void want(MissingMeshes& missing, Representation& level) {
+    if (!level.resident())
+        missing[level.summary.hash].push_back(&level);
+}
+
+void load(const lds_model& model, const MissingMeshes& missing, const Job& job) {
+    if (missing.empty())
         return;
     if (!model.store)
         fail(Status::Internal, "chosen meshes are neither in memory nor in a store");
-    std::vector<std::pair<Hash, std::vector<Representation*>>> list(wanted.begin(), wanted.end());
+    std::vector<std::pair<Hash, std::vector<Representation*>>> list(missing.begin(), missing.end());
     parallel_for(list.size(), [&](size_t i) {
         job.check();
         const std::shared_ptr<const Mesh> mesh = model.store->load_mesh(list[i].first);
         for (Representation* representation : list[i].second)
             representation->payload = mesh;
     });
+}
+
+}  // namespace
+
+void load_levels(lds_model& model, const choose::Cut& cut, const std::vector<uint32_t>& levels,
+                 const Job& job) {
+    MissingMeshes missing;
+    for (size_t i = 0; i < levels.size(); ++i) {
+        if (levels[i] == view::kBoxOnly)
+            continue;
+        const choose::CutNode& node = cut.nodes.at(cut.chosen.at(i));
+        want(missing, levels_with(model, node, levels[i])[levels[i]]);
+    }
+    load(model, missing, job);
+}
+
+void load_surfaces(lds_model& model, const lds_cut& cut, const Job& job) {
+    MissingMeshes missing;
+    for (const choose::SurfaceDetail& detail : cut.surfaces) {
+        const choose::CutNode& node = cut.cut.nodes.at(detail.node);
+        for (const uint32_t lod : detail.lods)
+            want(missing, levels_with(model, node, lod)[lod]);
+    }
+    // The same level is wanted by many chunks.
+    for (auto& [hash, levels] : missing) {
+        std::sort(levels.begin(), levels.end());
+        levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
+    }
+    load(model, missing, job);
 }
 
 }  // namespace lodestone::capi

@@ -17,6 +17,9 @@ void require_current(const lds_model& model, const lds_cut& cut);
 std::vector<Representation>& levels_with(lds_model& model, const choose::CutNode& node,
                                          uint32_t lod);
 
+/// Makes the levels resident of which a cut's surfaces take chunks.
+void load_surfaces(lds_model& model, const lds_cut& cut, const Job& job);
+
 /// Index of the node that a choice is; throws unless the cut is current and has it.
 uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position);
 

@@ -20,6 +20,7 @@ void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
     made.colors.clear();
     made.surface = {};
     made.batches.clear();
+    made.surfaces.clear();
     made.rays.clear();
     made.resident = {};
     made.largest_error_name.clear();
@@ -28,6 +29,19 @@ void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
             choose::path_of(*made.table, made.cut, made.cut.largest_error_node);
     made.rays = choose_rays(model, made.view, made.cut, job);
     made.resident = choose::resident_size(model.model, made.cut, made.rays);
+}
+
+/// Counts surfaces as they are drawn, of which the cut has counted whole levels.
+void add_surfaces(const lds_cut& cut, lds_cut_summary& out) {
+    for (const choose::SurfaceDetail& detail : cut.surfaces) {
+        out.triangles += detail.triangles;
+        out.triangles -= std::min(out.triangles, detail.whole.triangles);
+        out.bytes += detail.bytes;
+        out.bytes -= std::min(out.bytes, detail.whole.bytes);
+        out.largest_error_px = std::max(out.largest_error_px, detail.largest_error_px);
+        if (cut.cut.nodes[detail.node].lod == 0)
+            --out.originals;
+    }
 }
 
 }  // namespace
@@ -44,6 +58,7 @@ lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job, 
         made->table = model->table_for(given.kinds);
         made->cut = choose::choose_cut(*made->table, given, progress);
         finish(*model, *made, std::move(given), progress);
+        made->surfaces = choose::surface_details(model->model, made->view, made->cut);
         *out_cut = made.release();
     });
 }
@@ -95,6 +110,7 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
             plain.modifiers.ray_classes = 0;
             finish(*model, *made, std::move(plain), progress);
         }
+        made->surfaces = choose::surface_details(model->model, made->view, made->cut);
         hand_out(out_report, report, "out_report");
         *out_cut = made.release();
     });
@@ -119,6 +135,7 @@ lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary)
         const auto at = std::lower_bound(chosen.begin(), chosen.end(), cut->cut.largest_error_node);
         if (cut->cut.largest_error_node != choose::kNoParent && at != chosen.end())
             out.largest_error_choice = static_cast<uint64_t>(at - chosen.begin());
+        add_surfaces(*cut, out);
         for (const auto& [name, occurrences] : cut->cut.kinds)
             out.occurrences_of_kind[static_cast<size_t>(kind_named(name))] = occurrences;
         hand_out(out_summary, out, "out_summary");

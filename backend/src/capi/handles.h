@@ -7,6 +7,7 @@
 #include "choose/cut_budget.h"
 #include "choose/follow/cut_stepper.h"
 #include "choose/ray_class/ray_cut.h"
+#include "choose/surface_detail.h"
 #include "geometry/polygon_mesh.h"
 #include "hierarchy/build_settings.h"
 #include "segment/store.h"
@@ -52,6 +53,8 @@ struct lds_model {
 
 struct lds_cut {
     lodestone::choose::Cut cut;
+    /// The chunks of large surfaces in it; none where it was stepped: viewports draw whole levels.
+    std::vector<lodestone::choose::SurfaceDetail> surfaces;
     std::vector<lodestone::choose::RayCut> rays;  // those of the classes asked for
     lodestone::choose::ResidentSize resident;     // for the camera and these
     lodestone::View view;                         // it was made for this, with the threshold found

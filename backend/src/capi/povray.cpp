@@ -12,6 +12,7 @@
 #include "povray_export/scene/scene_writer.h"
 #include "povray_export/texture/surface_finish.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -133,7 +134,13 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         std::vector<uint32_t> levels;
         for (const uint32_t index : cut->cut.chosen)
             levels.push_back(cut->cut.nodes[index].lod);
+        for (const choose::SurfaceDetail& detail : cut->surfaces) {
+            const auto& chosen = cut->cut.chosen;
+            const auto at = std::lower_bound(chosen.begin(), chosen.end(), detail.node);
+            levels[static_cast<size_t>(at - chosen.begin())] = view::kBoxOnly;
+        }
         load_levels(*model, cut->cut, levels, progress);
+        load_surfaces(*model, *cut, progress);
         load_own(*model, *cut, progress);
         if (given.false_color == 0)
             model->load_pictures();
@@ -155,8 +162,13 @@ lds_status lds_povray_export(lds_model* model, const lds_cut* cut, const lds_vie
         wanted.load_finest = [model] { load_finest(*model); };
         if (given.light_error >= 0)
             wanted.light_error = given.light_error;
+        const choose::DetailedCut detailed =
+            cut->surfaces.empty() ? choose::DetailedCut()
+                                  : choose::draw_surfaces(model->model, cut->cut, cut->surfaces);
+        const bool whole = cut->surfaces.empty();
         const povray::ExportReport report = povray::export_scene(
-            model->model, cut->cut, view_of(view, model), wanted, model->problems, progress);
+            whole ? model->model : detailed.model, whole ? cut->cut : detailed.cut,
+            view_of(view, model), wanted, model->problems, progress);
         lds_export_report out{};
         out.bytes = report.bytes;
         out.files = report.files;

@@ -30,9 +30,10 @@ struct StandInCandidate {
     /// The error is that or more: measuring stopped where it was of no use any more.
     bool at_least = false;
     Payload payload;
-    std::vector<Material> materials;  // by slot
-    MaterialMeans means;              // of the last of them
-    double clear_area = 0;            // of a mesh's boxes that stand for what is thin
+    std::shared_ptr<const SurfaceLevel> surface;  // as Representation::surface
+    std::vector<Material> materials;              // by slot
+    MaterialMeans means;                          // of the last of them
+    double clear_area = 0;                        // of a mesh's boxes that stand for what is thin
     CandidateState state = CandidateState::Measured;
     /// Solids that are matched in area and centroid, but by few rays: settle() uses more. No state:
     /// solids in all states may be so, those that stay are settled once, and nothing depends on it.

@@ -47,6 +47,7 @@ void add(Object& object, std::vector<StandInCandidate>&& made, Model& model,
         representation.summary.sealed = candidate.state == CandidateState::Sealed;
         representation.payload = std::move(candidate.payload);
         representation.means = std::move(candidate.means);
+        representation.surface = std::move(candidate.surface);
         for (const Material& material : candidate.materials)
             representation.materials.push_back(palette.index_of(material));
         summarize(representation, model);
@@ -104,6 +105,8 @@ public:
         for (const ObjectIndex index : order) {  // of an earlier build
             std::vector<Representation>& own = model_.objects[index].representations;
             own.resize(std::min<size_t>(own.size(), 1));
+            for (Representation& finest : own)
+                finest.surface = nullptr;
         }
         summarize_assemblies(model_, order);
         const StoredStandIns shelf(store_, settings_.rebuild);
@@ -376,6 +379,7 @@ private:
                 continue;
             object.attributes = made[i]->attributes;
             object.sources = std::move(made[i]->sources);
+            object.representations[0].surface = std::move(made[i]->surface);
             for (SourceMaterial& one : object.sources)  // as it is when read from the store
                 one.material = palette_.index_of(model_.materials.at(one.material));
             add(object, std::move(made[i]->candidates), model_, palette_, wanted_[objects[i]]);

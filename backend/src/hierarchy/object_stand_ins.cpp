@@ -100,6 +100,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
     limits.whole.ground = surroundings.ground[leaf] != 0;
     limits.level_ratio = settings.level_ratio;
     limits.targets = targets_of(*mesh, settings);
+    limits.surface = true;
     limits.told = options.environment ? 0 : kOff * original.bound.radius;
     limits.find_crowd = [&] { return prune::find_crowd(*mesh); };
     FinestPictures pictures(finest);
@@ -114,6 +115,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
     paint_boxes(round.candidates, keep, finest);
     propose(ProposalStage::Kept, round);
     out.candidates = std::move(round.candidates);
+    out.surface = std::move(round.surface);
     return out;
 }
 

@@ -17,6 +17,8 @@ struct StandIns {
     Attributes attributes;
     std::vector<StandInCandidate> candidates;  // errors rise strictly, costs fall
     std::vector<SourceMaterial> sources;       // Object::sources
+    /// The chunks of the finest, if that is a large surface.
+    std::shared_ptr<const SurfaceLevel> surface;
 };
 
 struct StandInSurroundings;  // hierarchy/run/stand_in_surroundings.h

@@ -81,9 +81,10 @@ uint64_t visits(const Model& model, const std::vector<ObjectIndex>& order, Occur
 template <typename Is>
 std::vector<uint8_t> that_hold(const Model& model, const Is& is) {
     std::vector<uint8_t> out(model.objects.size(), 0);
+    for (ObjectIndex index = 0; index < model.objects.size(); ++index)
+        out[index] = is(model.objects[index]) ? 1 : 0;
     for (const ObjectIndex index : bottom_up(model)) {
         const Object& object = model.objects[index];
-        out[index] = is(object) ? 1 : 0;
         if (!object.group())
             continue;
         for (const Placement& placement : object.representations[0].assembly().placements)

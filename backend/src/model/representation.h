@@ -5,6 +5,7 @@
 
 #include "model/attributes.h"
 #include "model/representation_kinds.h"
+#include "model/surface_level.h"
 
 #include <vector>
 
@@ -38,6 +39,8 @@ struct Representation {
     RepresentationSummary summary;
     std::vector<uint32_t> materials;  // by slot, into Model::materials; a primitive uses the first
     MaterialMeans means;              // of a stand-in
+    /// The chunks of a mesh that is a level of a large surface; null: it is drawn whole.
+    std::shared_ptr<const SurfaceLevel> surface;
     Payload payload;
 
     bool resident() const { return payload.index() != 0; }

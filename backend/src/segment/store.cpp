@@ -6,6 +6,7 @@
 #include "format/gltf/glb.h"
 #include "segment/earlier_levels.h"
 #include "segment/store_json.h"
+#include "segment/surface_file.h"
 
 #include <algorithm>
 #include <atomic>
@@ -24,9 +25,17 @@ constexpr uint64_t kMostTilesetBytes = uint64_t{1} << 30u;
 // The bytes of the files of earlier levels.
 // Taste: two or three states of a large scene; more keep more of them, on the disk.
 constexpr uint64_t kMostEarlierBytes = uint64_t{256} << 20u;
+// Law: vertices of meshes are counted in 32 bits; the mesh tells how many there are.
+constexpr size_t kMostVertices = size_t{1} << 32u;
 // The characters of a file's name before its ending.
 // Law: a hash of 64 bits in hexadecimal digits.
 constexpr size_t kStem = 16;
+
+/// A model and whether all files of its chunks could be used; others may come.
+struct ReadModel {
+    Model model;
+    bool whole = true;
+};
 
 /// The model of the file of a kind that this process has read last.
 class RecentModel {
@@ -41,7 +50,10 @@ public:
             if (model_ != nullptr && path_ == path && state_ == state)
                 return model_;
         }
-        auto model = std::make_shared<const Model>(read(file));
+        ReadModel found = read(file);
+        auto model = std::make_shared<const Model>(std::move(found.model));
+        if (!found.whole)
+            return model;
         const std::lock_guard lock(mutex_);
         path_ = path;
         state_ = state;
@@ -56,8 +68,42 @@ private:
     std::shared_ptr<const Model> model_;
 };
 
-Model tileset_in(const fs::path& file) {
-    return model_of_tileset(read_file(file, kMostTilesetBytes));
+/// Reads the chunks of all levels of large surfaces. Without its file a level is drawn whole, and
+/// the object's levels are made again by the next build.
+ReadModel with_chunks(Model model, const fs::path& folder) {
+    bool whole = true;
+    std::map<Hash, std::shared_ptr<const SurfaceLevel>> known;
+    std::map<Hash, std::shared_ptr<const SurfaceTree>> trees;
+    for (Object& object : model.objects) {
+        for (Representation& representation : object.representations) {
+            if (representation.surface == nullptr)
+                continue;
+            const auto [at, fresh] = known.try_emplace(representation.surface->hash);
+            try {
+                if (fresh) {
+                    SurfaceLevel level = surface_level_of(
+                        read_file(folder / chunk_file_of(*representation.surface)));
+                    level.tree = trees.try_emplace(level.tree->hash, level.tree).first->second;
+                    if (level.hash == at->first)
+                        at->second = std::make_shared<const SurfaceLevel>(std::move(level));
+                }
+                if (at->second != nullptr)
+                    check(*at->second, kMostVertices, representation.summary.cost.triangles);
+                representation.surface = at->second;
+            } catch (const Error&) {
+                representation.surface = nullptr;
+            }
+            if (representation.surface == nullptr) {
+                object.build_hash = 0;
+                whole = false;
+            }
+        }
+    }
+    return {std::move(model), whole};
+}
+
+ReadModel tileset_in(const fs::path& file) {
+    return with_chunks(model_of_tileset(read_file(file, kMostTilesetBytes)), file.parent_path());
 }
 
 /// The triangles that viewers of tiles draw for a representation.
@@ -67,7 +113,8 @@ Mesh drawable(const Representation& representation) {
 
 /// Whether a file has a name as this store and write_file() give it; other files are the user's.
 bool ours(const fs::path& name) {
-    static const std::set<std::string> kEndings{".glb", ".bound", ".png", ".jpg", ".exr"};
+    static const std::set<std::string> kEndings{".glb", ".chunks", ".bound",
+                                                ".png", ".jpg",    ".exr"};
     const std::string stem = name.stem().string();
     const std::string ending = name.extension().string();
     if (ending == ".tmp")
@@ -161,7 +208,7 @@ bool Store::exists() const {
 }
 
 Model Store::read() const {
-    return tileset_in(tileset());
+    return tileset_in(tileset()).model;
 }
 
 std::shared_ptr<const Model> Store::read_shared() const {
@@ -173,7 +220,8 @@ std::shared_ptr<const Model> Store::read_earlier() const {
     static RecentModel recent;
     try {
         return recent.get(earlier(), [](const fs::path& file) {
-            return model_of_description(read_file(file, kMostTilesetBytes));
+            return with_chunks(model_of_description(read_file(file, kMostTilesetBytes)),
+                               file.parent_path());
         });
     } catch (const Error&) {
         return std::make_shared<const Model>();  // there is none, or it is another version's
@@ -253,11 +301,15 @@ uint64_t Store::write(const Model& model, const Job& job, StoreUpdate update) co
     const FileLock lock(folder_ / "lock", job);
 
     std::map<Hash, const Representation*> missing;
+    std::map<Hash, const SurfaceLevel*> parted;
     for (const ObjectIndex index : bottom_up(model)) {
         for (const Representation& representation : model.objects[index].representations) {
             if (representation.summary.kind != Kind::Assembly &&
                 !has_content(folder_ / file_of(representation.summary.hash)))
                 missing[representation.summary.hash] = &representation;
+            const SurfaceLevel* surface = representation.surface.get();
+            if (surface != nullptr)
+                parted[surface->hash] = surface;
         }
     }
     std::vector<const Representation*> jobs;
@@ -278,6 +330,14 @@ uint64_t Store::write(const Model& model, const Job& job, StoreUpdate update) co
         bytes += glb.size();
         job.progress(0.95 * static_cast<double>(++done) / static_cast<double>(jobs.size()));
     });
+    for (const auto& [hash, surface] : parted) {
+        const std::string chunks = bytes_of(*surface);
+        const fs::path path = folder_ / chunk_file_of(*surface);
+        if (file_state(path).bytes == chunks.size() && read_file(path) == chunks)
+            continue;  // a damaged one would make all levels anew, each time
+        write_file(path, chunks);
+        bytes += chunks.size();
+    }
     bytes += write_pictures(model, job);
     job.check();
 

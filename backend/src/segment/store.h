@@ -2,6 +2,7 @@
 // Store: a model on disk, a 3D Tiles 1.1 tileset folder (docs/architecture.md, Store).
 //   tileset.json      the tiles for strangers, and in asset.extras.lodestone all we know, exactly
 //   r/<16 hex>.glb    one representation each, named by content hash
+//   r/<16 hex>.chunks the chunks of a level of a large surface, named by their own hash
 //   earlier.json      what is known of the levels of what it held before, within a bound
 //   i/<16 hex>.png    one picture each (or .jpg, .exr), likewise
 //   b/<16 hex>.bound  the levels of something that deforms, by which those of each frame are made

@@ -144,6 +144,8 @@ Json out(const Representation& r) {
         json["sealed"] = true;
     if (s.error == 0)
         json["shape"] = hex16(s.shape);
+    if (r.surface != nullptr)
+        json["chunks"] = hex16(r.surface->hash);
     for (const SlotShares& mean : r.means)
         json["means"].push_back(out(mean));
     write_payload(json, r);

@@ -173,6 +173,12 @@ Representation representation(const Json& json, size_t object_count, size_t mate
     }
     if (r.means.size() > r.materials.size())
         fail(Status::BadFile, "a representation has more means than materials");
+    if (json.contains(
+            "chunks")) {  // they are in a file; until it is read, only their hash is known
+        auto surface = std::make_shared<SurfaceLevel>();
+        surface->hash = hash(json, "chunks");
+        r.surface = std::move(surface);
+    }
     r.payload = read_payload(json, s.kind, {object_count, r.materials.size()});
     return r;
 }
@@ -306,6 +312,10 @@ std::string bound_file_of(Hash bind_hash) {
     return text("b/", hex16(bind_hash), ".bound");
 }
 
+std::string chunk_file_of(const SurfaceLevel& level) {
+    return text("r/", hex16(level.hash), ".chunks");
+}
+
 std::string tileset_head(const DescriptionText& description, bool with_view) {
     std::string text = "{\"asset\":{\"version\":\"1.1\",\"extras\":{\"lodestone\":";
     text += description.objects;
@@ -361,6 +371,8 @@ std::set<std::string> files_of(const Model& model) {
         for (const Representation& representation : object.representations) {
             if (representation.summary.kind != Kind::Assembly)
                 files.insert(file_of(representation.summary.hash));
+            if (representation.surface != nullptr)
+                files.insert(chunk_file_of(*representation.surface));
         }
     }
     for (const Material& material : model.materials)

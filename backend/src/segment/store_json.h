@@ -17,6 +17,8 @@ inline constexpr int kStoreFormat = 3;
 std::string file_of(Hash hash);
 /// The name of the file of bound levels: "b/<16 hex>.bound".
 std::string bound_file_of(Hash bind_hash);
+/// The name of the file of a surface level's chunks: "r/<16 hex>.chunks".
+std::string chunk_file_of(const SurfaceLevel& level);
 /// The name of a picture's file: "i/<16 hex>.png", ".jpg" or ".exr".
 std::string file_of(const Picture& picture);
 /// The names of the files of every representation, bound levels and pictures of a model.

@@ -93,6 +93,10 @@ std::vector<Mesh> levels_of(const Mesh& mesh, const std::vector<size_t>& counts,
 
 }  // namespace
 
+bool has_lamps(const Mesh& mesh, std::span<const Material> materials) {
+    return lamps_in(mesh, materials).parts > 0;
+}
+
 std::vector<Mesh> simplify_with_lamps(const Mesh& mesh, std::span<const Material> materials,
                                       std::span<const size_t> targets, const Job& job) {
     const LampSplit lamps = lamps_in(mesh, materials);

@@ -11,6 +11,9 @@
 
 namespace lodestone::hierarchy {
 
+/// Whether something of a mesh is a lamp.
+bool has_lamps(const Mesh& mesh, std::span<const Material> materials);
+
 /// Levels as simplify::simplify_chain() makes them, but loose parts that glow in the midst of
 /// others (a bulb in its globe) are simplified by themselves, to a twelfth of the triangles or
 /// more: as small as they are they would vanish first, and with them what lights the thing.

@@ -4,6 +4,7 @@
 #include "hierarchy/evaluators/distance_error.h"
 #include "hierarchy/proposers/collapse_levels.h"
 #include "hierarchy/proposers/lamp_levels.h"
+#include "hierarchy/proposers/surface_chunks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,7 +42,13 @@ void propose_levels(ProposalRound& round) {
         return;
     Mesh plain;
     const Mesh& source = without_unseen_colors(limits.mesh, finest.materials, plain);
-    std::vector<Mesh> levels = simplify_with_lamps(source, finest.materials, limits.targets, job);
+    simplify::SimplifiedSurface surface;
+    if (limits.surface && is_large_surface(source) && !has_lamps(source, finest.materials))
+        surface = simplify_in_chunks(source, limits.targets, job);
+    else
+        surface.levels = simplify_with_lamps(source, finest.materials, limits.targets, job);
+    std::vector<Mesh>& levels = surface.levels;
+    round.surface = surface.original;
     std::vector<StandInCandidate> measured;
     const double solid = nearest_of_use(round);
     std::vector<double> nexts{solid};  // where a level may end, and one of them takes over
@@ -64,6 +71,8 @@ void propose_levels(ProposalRound& round) {
         StandInCandidate candidate;
         candidate.payload = std::make_shared<const Mesh>(std::move(level));
         candidate.materials = finest.materials;
+        if (surface.original != nullptr)
+            candidate.surface = surface.chunks[i];
         candidate.state = CandidateState::Unproven;
         measure_mesh(candidate, finest, job, most, known);
         coarser = std::min(candidate.error, std::max(most, useless));

@@ -51,6 +51,7 @@ struct ProposalLimits {
     ReplacedObject whole;
     double level_ratio = 0.4;               // as BuildSettings
     std::vector<size_t> targets = {};       // triangles of levels, falling
+    bool surface = false;                   // it may be a large surface, of many chunks
     double told = 0;                        // errors up to this are told in any case
     std::vector<uint8_t> environment = {};  // by triangle of the finest; empty: no group
     /// The error from which on a mesh of so many triangles is no use, whatever else there is;
@@ -79,6 +80,7 @@ struct ProposalRound {
     /// candidates before it is known that pictures need not compare them.
     std::vector<StandInCandidate> near_solids;
     std::vector<StandInCandidate> candidates;
+    std::shared_ptr<const SurfaceLevel> surface;  // the chunks of the finest, where it has some
 };
 
 }  // namespace lodestone::hierarchy

@@ -66,6 +66,7 @@ void StoredStandIns::take(const StoredObject& stored, Object& object, MaterialPa
     object.attributes = from.attributes;
     for (const SourceMaterial& source : from.sources)
         object.sources.push_back({number_of(source.material), source.plain});
+    object.representations[0].surface = from.representations[0].surface;
     for (size_t lod = 1; lod < from.representations.size(); ++lod) {
         Representation& level = object.representations.emplace_back(from.representations[lod]);
         std::transform(level.materials.begin(), level.materials.end(), level.materials.begin(),
@@ -91,6 +92,7 @@ bool StoredStandIns::take(const StoredObject& stored, const ChangedFinishes& cha
         changed.change(*object.attributes);
     for (const SourceMaterial& source : from.sources)
         object.sources.push_back({changed.number_of(source.material), source.plain});
+    object.representations[0].surface = from.representations[0].surface;
     for (Representation& level : levels) {
         const Representation before = level;
         for (size_t slot = 0; slot < level.materials.size(); ++slot)
