@@ -4,11 +4,12 @@
     /usr/bin/python3 tests/bench/speed/bench_program.py cut [--write]
     /usr/bin/python3 tests/bench/speed/bench_program.py builds [--write]
     /usr/bin/python3 tests/bench/speed/bench_program.py crowds [--write]
+    /usr/bin/python3 tests/bench/speed/bench_program.py surfaces [--write] [-- SIDE ...]
     /usr/bin/python3 tests/bench/speed/bench_program.py group [--write] [-- --flat 1000 STORE ...]
 
-Builds the program in build/release first; its source (bench_builds.cpp,
-bench_cut.cpp, bench_crowds.cpp, bench_group.cpp) tells what it measures and what the words after --
-are. No number makes it fail.
+Builds the program in build/release first; its source (bench_builds.cpp, bench_cut.cpp,
+bench_crowds.cpp, bench_group.cpp, bench_surfaces.cpp) tells what it measures and what the words
+after -- are. No number makes it fail.
 """
 
 import argparse
@@ -25,6 +26,7 @@ TITLES = {
     "cut": "Choosing",
     "group": "Grouping",
     "crowds": "Crowds from afar",
+    "surfaces": "Large surfaces",
 }
 
 
