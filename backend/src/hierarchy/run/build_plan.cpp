@@ -110,9 +110,7 @@ BuildPlan plan_build(Model& model, const std::vector<ObjectIndex>& order,
             MovedCopy one = same_moved->second;
             one.index = index;
             move(one);
-        } else if (shelf.adopt(model, index, wanted, palette)) {
-            continue;
-        } else if (!inside[index]) {
+        } else if (shelf.adopt(model, index, wanted, palette) || !inside[index]) {
             continue;
         } else if (const auto at = moved.find(index); at != moved.end()) {
             moved_one_of.emplace(content, at->second);

@@ -98,9 +98,12 @@ Model village() {
     model.objects[stone].representations[0].materials.pop_back();  // "wall"
     summarize(model.objects[stone].representations[0], model);
     std::vector<Placement> yard;
-    for (int i = 0; i < 12; ++i)
-        yard.push_back({i % 3 == 0 ? house : ball, models::moved(4.0 * (i % 4), 4.0 * (i / 4), 0),
+    yard.reserve(12);
+    for (int i = 0; i < 12; ++i) {
+        const int row = i / 4;
+        yard.push_back({i % 3 == 0 ? house : ball, models::moved(4.0 * (i % 4), 4.0 * row, 0),
                         std::to_string(i)});
+    }
     const ObjectIndex block = models::add_group(model, "block", yard);
     model.root = models::add_group(model, "village",
                                    {{block, Affine{}, "left"},
