@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdlib>
+#include <functional>
 #include <span>
 #include <utility>
 
@@ -30,11 +32,21 @@ constexpr size_t kLeastSources = 1000;
 /// Taste: fewer do not tell its shading.
 constexpr size_t kSamplesToShade = 4;
 /// The mean square difference of normals above which a triangle is shaded anew, and the part of it
-/// that one normal for all of the triangle may then leave: a rim is in it, or noise of a scan.
+/// that may then be left: a rim is in it, or noise of a scan.
 /// Taste: 0.001 is 1.8 degrees, which an eye sees on a flat face.
 constexpr float kLeastOff = 0.001f;
-// Taste: a larger part makes facets of what curves.
+// Taste: a larger part shades more triangles anew for little, and makes facets of what curves.
 constexpr float kLeft = 0.25f;
+/// The same difference where the mesh is rough: it has so many triangles that nobody sees single
+/// ones, and its wedges are off by so much in the mean. What is smooth keeps its wedges: with
+/// normals of its own each triangle would be a facet.
+/// Taste: 0.01 is 6 degrees, which nobody sees among others.
+constexpr float kLeastRough = 0.01f;
+// Taste: 0.02 is 8 degrees; a larger value has fewer facets on smooth things and less relief on
+// terrain.
+constexpr double kRough = 0.02;
+// Taste: fewer are facets of a smooth thing that is seen near enough.
+constexpr size_t kManyTriangles = 2000;
 /// The cosine of corners at one vertex that share a normal.
 /// Taste: 0.98 is 11 degrees; a larger cosine keeps more creases and more normals.
 constexpr float kAlike = 0.98f;
@@ -45,6 +57,53 @@ constexpr size_t kTrianglesAtOnce = 2048;
 bool shaded(const glm::vec3& normal) {
     return normal != glm::vec3(0.0f);
 }
+
+/// The linear function over one triangle that is nearest to the normals of its samples. Their mean
+/// counts like one more sample.
+class TriangleShading {
+public:
+    void add(const FitSample& sample, const glm::vec3& normal) {
+        const glm::vec3 weights(sample.weights[0], sample.weights[1], sample.weights[2]);
+        for (int corner = 0; corner < 3; ++corner) {
+            squares_[corner] += sample.area * weights[corner] * weights;
+            sums_[corner] += sample.area * weights[corner] * normal;
+        }
+        area_ += sample.area;
+        ++count_;
+    }
+    size_t count() const { return count_; }
+    /// Computes the normals of the three corners; false when samples cancel out.
+    bool solve(glm::vec3* corners) const {
+        const glm::vec3 mean = (sums_[0] + sums_[1] + sums_[2]) / area_;
+        const float pull = area_ / static_cast<float>(count_);
+        const glm::mat3 inverse = glm::inverse(squares_ + glm::mat3(pull));
+        for (int corner = 0; corner < 3; ++corner) {
+            glm::vec3 normal(0.0f);
+            for (int k = 0; k < 3; ++k)
+                normal += inverse[k][corner] * (sums_[k] + pull * mean);
+            const float length = glm::length(normal);
+            if (!(length > 0.1f) || !std::isfinite(length))
+                return false;
+            corners[corner] = normal / length;
+        }
+        return true;
+    }
+    /// The same with one normal for all of it.
+    bool solve_flat(glm::vec3* corners) const {
+        const glm::vec3 sum = sums_[0] + sums_[1] + sums_[2];
+        const float length = glm::length(sum);
+        if (!(length > 0) || !std::isfinite(length))
+            return false;
+        std::fill_n(corners, 3, sum / length);
+        return true;
+    }
+
+private:
+    glm::mat3 squares_{0.0f};
+    glm::vec3 sums_[3] = {glm::vec3(0.0f), glm::vec3(0.0f), glm::vec3(0.0f)};
+    float area_ = 0;
+    size_t count_ = 0;
+};
 
 /// The mean square difference between the normals of samples and those blended from the corners'.
 float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<const PlacedSample> on,
@@ -64,30 +123,35 @@ float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<cons
     return area > 0 ? sum / area : 0;
 }
 
-/// The original's normal on a triangle where that is flat and its wedges lean; zero elsewhere.
-glm::vec3 flat_normal(const CollapseMesh& mesh, uint32_t triangle, const FitSamples& samples,
-                      std::span<const PlacedSample> on, const Mesh& source) {
-    const glm::vec3 none(0.0f);
-    if (on.size() < kSamplesToShade)
-        return none;
-    glm::vec3 sum(0.0f);
-    for (const PlacedSample& placed : on) {
-        const FitSample& sample = samples[placed.index];
-        const glm::vec3 normal = normal_at(source, sample);
-        if (!shaded(normal))
-            return none;
-        sum += sample.area * normal;
-    }
-    const float length = glm::length(sum);
-    if (!(length > 0) || !std::isfinite(length))
-        return none;
-    const glm::vec3 mean = sum / length;
-    const glm::vec3 flat[3] = {mean, mean, mean};
+/// By how much the wedges of a triangle shade it unlike its samples (mean square).
+float off_by_wedges(const CollapseMesh& mesh, uint32_t triangle, const FitSamples& samples,
+                    std::span<const PlacedSample> on, const Mesh& source) {
     const Triangle& wedges = mesh.wedges[triangle];
     const glm::vec3 carried[3] = {mesh.normals[wedges.x], mesh.normals[wedges.y],
                                   mesh.normals[wedges.z]};
-    const float before = off_by(carried, samples, on, source);
-    return before > kLeastOff && off_by(flat, samples, on, source) < kLeft * before ? mean : none;
+    return off_by(carried, samples, on, source);
+}
+
+/// Writes new normals into `corners`, unless those of the wedges are off by little (`before`) or
+/// the new ones leave much of it. What is not rough gets one normal for all of the triangle.
+bool shade_anew(const FitSamples& samples, std::span<const PlacedSample> on, const Mesh& source,
+                bool rough, float before, glm::vec3* corners) {
+    if (on.size() < kSamplesToShade || !(before > (rough ? kLeastRough : kLeastOff)))
+        return false;
+    TriangleShading shading;
+    for (const PlacedSample& placed : on) {
+        const FitSample& sample = samples[placed.index];
+        const glm::vec3 normal = normal_at(source, sample);
+        if (shaded(normal))
+            shading.add(sample, normal);
+    }
+    glm::vec3 found[3];
+    if (shading.count() < kSamplesToShade ||
+        !(rough ? shading.solve(found) : shading.solve_flat(found)) ||
+        !(off_by(found, samples, on, source) < kLeft * before))
+        return false;
+    std::copy(found, found + 3, corners);
+    return true;
 }
 
 /// Gives corners at `vertex` that come out alike, of wedges that were alike, their mean.
@@ -140,20 +204,30 @@ std::vector<glm::vec3> corner_normals(CollapseMesh& mesh, const Mesh& source,
     fit_wedge_normals(mesh, source, adjacency, samples);
     const size_t count = mesh.triangles.size();
     const SamplesByTriangle by_triangle(places, samples);
+    std::vector<float> off(count, 0.0f);
+    const auto for_each_triangle = [&](const std::function<void(uint32_t)>& act) {
+        parallel_for((count + kTrianglesAtOnce - 1) / kTrianglesAtOnce, [&](size_t chunk) {
+            job.check();
+            const size_t end = std::min(count, (chunk + 1) * kTrianglesAtOnce);
+            for (size_t t = chunk * kTrianglesAtOnce; t < end; ++t)
+                act(static_cast<uint32_t>(t));
+        });
+    };
+    for_each_triangle(
+        [&](uint32_t t) { off[t] = off_by_wedges(mesh, t, samples, by_triangle.on(t), source); });
+    double sum = 0;
+    double area = 0;
+    for (size_t t = 0; t < count; ++t) {
+        const double weight = glm::length(mesh.facets[t]);
+        sum += weight * off[t];
+        area += weight;
+    }
+    const bool rough = count >= kManyTriangles && sum > kRough * area;
     std::vector<glm::vec3> normals(3 * count, glm::vec3(0.0f));
     std::atomic<bool> any{false};
-    parallel_for((count + kTrianglesAtOnce - 1) / kTrianglesAtOnce, [&](size_t chunk) {
-        job.check();
-        const size_t end = std::min(count, (chunk + 1) * kTrianglesAtOnce);
-        for (size_t t = chunk * kTrianglesAtOnce; t < end; ++t) {
-            const auto triangle = static_cast<uint32_t>(t);
-            const glm::vec3 flat =
-                flat_normal(mesh, triangle, samples, by_triangle.on(triangle), source);
-            if (!shaded(flat))
-                continue;
-            std::fill_n(&normals[3 * t], 3, flat);
+    for_each_triangle([&](uint32_t t) {
+        if (shade_anew(samples, by_triangle.on(t), source, rough, off[t], &normals[3 * size_t{t}]))
             any.store(true, std::memory_order_relaxed);
-        }
     });
     if (!any.load())
         return {};
