@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 namespace lodestone::hierarchy {
@@ -18,6 +19,10 @@ namespace {
 // So many things drawn in a group may be a crowd.
 // Taste: a larger number looks for crowds in fewer groups.
 constexpr size_t kManyChildren = 32;
+// So many of about one size are one, as a block of houses is. A house among its fences and bushes
+// is none.
+// Taste: a larger number has fewer crowds.
+constexpr double kManyAlike = 16;
 
 /// Leaves out what no ray from outside reaches (of the occurrences too); everything stays when
 /// nothing would, and where there is glass, which ends rays but hides nothing (`seen` is empty).
@@ -35,6 +40,21 @@ Mesh without_hidden(const Mesh& mesh, const std::vector<uint8_t>& seen,
     }
     occurrence.resize(kept);
     return shell;
+}
+
+/// As many things of one size would show as much alike: the square of all area over the sum of the
+/// squares of each occurrence's. source: Simpson 1949.
+double things_alike(const Mesh& shell, const std::vector<uint32_t>& occurrence) {
+    std::map<uint32_t, double> areas;
+    for (size_t i = 0; i < shell.triangles.size(); ++i)
+        areas[occurrence[i]] += glm::length(area_vector(shell, i));
+    double sum = 0;
+    double squares = 0;
+    for (const auto& [number, area] : areas) {
+        sum += area;
+        squares += area * area;
+    }
+    return squares > 0 ? sum * sum / squares : 0;
 }
 
 /// The first of numbers that fall by `ratio`, at most `first`, so that one of them is `sure`.
@@ -126,6 +146,7 @@ GroupLimits::GroupLimits(OpenedGroup& group, const FlattenedGroup& reference,
     whole.bytes = static_cast<double>(shell_.triangles.size() * costs.triangle_bytes);
     whole.most = children_.bytes() - static_cast<double>(costs.occurrence_bytes);
     whole.many = reference.occurrences >= kManyChildren;
+    whole.alike = whole.many && things_alike(shell_, occurrence_) >= kManyAlike;
     const std::optional<size_t> ground =
         ground_of(group.model(), group.index(), surroundings.marked);
     whole.ground = ground.has_value();

@@ -89,7 +89,7 @@ void propose_painted_boxes(ProposalRound& round) {
     constexpr size_t kMost = 128;
     const ReplacedObject& whole = round.limits.whole;
     const MeasuredFinest& finest = round.finest;
-    if (!whole.many || whole.ground || finest.options.environment || finest.glows ||
+    if (!whole.alike || whole.ground || finest.options.environment || finest.glows ||
         finest.refracts() || !finest.solid() || is_foliage(round.crowd))
         return;
     const Mesh& mesh = round.limits.mesh;

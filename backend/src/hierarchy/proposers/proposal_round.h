@@ -37,6 +37,7 @@ struct ReplacedObject {
     double bytes = 0;     // as one mesh
     double most = 0;      // bytes of an occurrence that are no use any more
     bool many = false;    // its parts are objects
+    bool alike = false;   // likewise, and many of these are of about one size
     bool ground = false;  // some of it is: no solid stands for that
     /// The error from which on its parts cost less than so many bytes; empty: never.
     std::function<double(double bytes)> cheaper_from = {};

@@ -58,7 +58,7 @@ protected:
         limits.whole.costs = povray::povray_costs();
         limits.whole.bytes = limits.whole.most =
             static_cast<double>(mesh.triangles.size() * limits.whole.costs.triangle_bytes);
-        limits.whole.many = many;
+        limits.whole.many = limits.whole.alike = many;
         hierarchy::FinestPictures pictures(finest);
         const Job job;
         hierarchy::ProposalRound round(finest, pictures, limits, job);
@@ -160,4 +160,29 @@ TEST_F(PaintedBoxes, ABlockOfHousesThatIsSevenPixelsWideIsOneThing) {
     const choose::Cut cut = choose::choose_cut(model, view);
     EXPECT_EQ(cut.chosen.size(), 1u);
     EXPECT_LE(cut.triangles, 400u);
+}
+
+TEST_F(PaintedBoxes, AHouseAmongManyPostsIsNoCrowd) {
+    // Boxes stood for it where solids and composites are nearer: far streets looked coarser.
+    const auto is_painted = [&](const glm::dvec3& house_size) {
+        Model model;
+        const ObjectIndex post =
+            models::add_leaf(model, "post", shapes::box({0, 0, 0}, {0.5, 0.5, 2}),
+                             models::colored("wood", {0.5, 0.3, 0.2}));
+        const ObjectIndex big = models::add_leaf(model, "house", shapes::box({0, 0, 0}, house_size),
+                                                 models::colored("wall", {0.7, 0.7, 0.6}));
+        std::vector<Placement> placements{{big, models::moved(3, 3, 0), "house"}};
+        for (int i = 0; i < 40; ++i)
+            placements.push_back({post, models::moved(0.7 * i, 0, 0), std::to_string(i)});
+        model.root = models::add_group(model, "yard", std::move(placements));
+        summarize_assemblies(model, bottom_up(model));
+        Problems problems;
+        hierarchy::build_hierarchy(model, segment::Store(scratch("store")), {}, problems, {});
+        const std::vector<Representation>& levels = model.objects[model.root].representations;
+        return std::any_of(levels.begin() + 1, levels.end(), [](const Representation& level) {
+            return level.summary.kind == Kind::Mesh && !level.mesh().colors.empty();
+        });
+    };
+    EXPECT_FALSE(is_painted({8, 8, 9}));
+    EXPECT_TRUE(is_painted({0.5, 0.5, 3}));  // no larger than the posts
 }
