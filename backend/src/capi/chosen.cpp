@@ -3,8 +3,9 @@
 
 #include "base/parallel.h"
 
-#include <algorithm>
 #include <map>
+#include <set>
+#include <vector>
 
 namespace lodestone::capi {
 
@@ -37,11 +38,11 @@ uint32_t node_at(const lds_model& model, const lds_cut& cut, size_t position) {
 namespace {
 
 /// The representations that have no mesh yet, by their hashes.
-using MissingMeshes = std::map<Hash, std::vector<Representation*>>;
+using MissingMeshes = std::map<Hash, std::set<Representation*>>;
 
 void want(MissingMeshes& missing, Representation& level) {
     if (!level.resident())
-        missing[level.summary.hash].push_back(&level);
+        missing[level.summary.hash].insert(&level);
 }
 
 void load(const lds_model& model, const MissingMeshes& missing, const Job& job) {
@@ -49,7 +50,7 @@ void load(const lds_model& model, const MissingMeshes& missing, const Job& job) 
         return;
     if (!model.store)
         fail(Status::Internal, "chosen meshes are neither in memory nor in a store");
-    std::vector<std::pair<Hash, std::vector<Representation*>>> list(missing.begin(), missing.end());
+    const std::vector<MissingMeshes::value_type> list(missing.begin(), missing.end());
     parallel_for(list.size(), [&](size_t i) {
         job.check();
         const std::shared_ptr<const Mesh> mesh = model.store->load_mesh(list[i].first);
@@ -78,11 +79,6 @@ void load_surfaces(lds_model& model, const lds_cut& cut, const Job& job) {
         const choose::CutNode& node = cut.cut.nodes.at(detail.node);
         for (const uint32_t lod : detail.lods)
             want(missing, levels_with(model, node, lod)[lod]);
-    }
-    // The same level is wanted by many chunks.
-    for (auto& [hash, levels] : missing) {
-        std::sort(levels.begin(), levels.end());
-        levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
     }
     load(model, missing, job);
 }

@@ -33,7 +33,8 @@ struct DetailedCut {
 
 /// Draws each of these nodes by one closed mesh (geometry/closed_surface.h), as the only level of
 /// an object that no group places. All levels of which chunks are taken must be resident. A surface
-/// whose levels do not fit together is drawn by the finest of them. `details` are those of the model and cut.
+/// whose levels do not fit together is drawn by the finest of them. `details` are those of the
+/// model and cut.
 DetailedCut draw_surfaces(const Model& model, const Cut& cut,
                           std::span<const SurfaceDetail> details);
 

@@ -72,8 +72,9 @@ public:
 
     /// Writes what is missing, then replaces tileset.json if what it says has changed, then removes
     /// files that neither the new nor the previous tileset.json names, nor earlier.json: of the
-    /// stand-ins that go, the newest stay. A killed write leaves the old store. Representations and pictures that are not resident must be in the store already.
-    /// Returns the bytes written. Throws Error(Io), also when another writer is at work.
+    /// stand-ins that go, the newest stay. A killed write leaves the old store. Representations and
+    /// pictures that are not resident must be in the store already. Returns the bytes written.
+    /// Throws Error(Io), also when another writer is at work.
     uint64_t write(const Model& model, const Job& job,
                    StoreUpdate update = StoreUpdate::Anything) const;
 

@@ -173,8 +173,8 @@ Representation representation(const Json& json, size_t object_count, size_t mate
     }
     if (r.means.size() > r.materials.size())
         fail(Status::BadFile, "a representation has more means than materials");
-    if (json.contains(
-            "chunks")) {  // they are in a file; until it is read, only their hash is known
+    // They are in a file; until it is read, only their hash is known.
+    if (json.contains("chunks")) {
         auto surface = std::make_shared<SurfaceLevel>();
         surface->hash = hash(json, "chunks");
         r.surface = std::move(surface);

@@ -35,12 +35,12 @@ struct CompositeOptions {
     uint32_t samples = 8192;  // the rays that find the clustered points
 };
 
-/// Composites of at most 4, 8, 16, 32, 64 and 128 parts, those within `least` and `most` (fewer levels where
-/// clusters cannot be split). They are nested: one cluster of each level is split into two for the
-/// next part. The largest cluster (area times variance) is split in two by place and color
-/// (2-means). Parts hide parts of each other, so each level is matched again as a whole, by rays:
-/// visible area, centroid and variances are the mesh's (`wanted`), or where no sizes give all of
-/// these (plates around a closed body) the ratios of the variances. No solid reaches below the
+/// Composites of at most 4, 8, 16, 32, 64 and 128 parts, those within `least` and `most` (fewer
+/// levels where clusters cannot be split). They are nested: one cluster of each level is split into
+/// two for the next part. The largest cluster (area times variance) is split in two by place and
+/// color (2-means). Parts hide parts of each other, so each level is matched again as a whole, by
+/// rays: visible area, centroid and variances are the mesh's (`wanted`), or where no sizes give all
+/// of these (plates around a closed body) the ratios of the variances. No solid reaches below the
 /// lowest point of the mesh. Empty where nothing can be seen. Any number of threads gives the same
 /// bits.
 std::vector<ClusteredComposite> composites(const Mesh& mesh, const ray::SkinPtr& skin,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What crowds cost from afar: `cmake --build build/release --target bench_crowds`, then
-// build/release/tests/bench_crowds [--store FOLDER] [--pictures FOLDER] [--houses NUMBER]. Houses of twelve boxes stand 14 m apart in blocks of
-// 8 x 8, the blocks in towns of 8 x 8, and so on; 16 of them differ. Each city is built (all of its
-// levels, into the store), then looked at from an oblique angle in which it is 1,000, 100 and 30 pixels
-// wide. What a picture uses should be bounded by its pixels: (occurrences + solids + triangles /
-// 100) a covered pixel at most 2, and hardly more for ten times as many houses. Pictures of the cut
-// and of full detail (crowd_pictures.h) are compared: their SSIM, and by how much the cut is
-// brighter on covered pixels. With --houses only cities of so many are looked at, with --pictures
-// the pictures are kept.
+// build/release/tests/bench_crowds [--store FOLDER] [--pictures FOLDER] [--houses NUMBER]. Houses
+// of twelve boxes stand 14 m apart in blocks of 8 x 8, the blocks in towns of 8 x 8, and so on; 16
+// of them differ. Each city is built (all of its levels, into the store), then looked at from an
+// oblique angle in which it is 1,000, 100 and 30 pixels wide. What a picture uses should be bounded
+// by its pixels: (occurrences + solids + triangles / 100) a covered pixel at most 2, and hardly
+// more for ten times as many houses. Pictures of the cut and of full detail (crowd_pictures.h) are
+// compared: their SSIM, and by how much the cut is brighter on covered pixels. With --houses only
+// cities of so many are looked at, with --pictures the pictures are kept.
 #include "base/clock.h"
 #include "base/random.h"
 #include "base/text.h"

@@ -34,7 +34,8 @@ void add_primitives(std::vector<StandInCandidate>& candidates, const Bound& boun
             candidate.state = CandidateState::Unproven;
             measure_primitive(candidate, finest, nearest, job);
             nearest = std::min(nearest, candidate.error);
-            // Beside a crowd a solid is near in space and looks different: that must not end levels.
+            // Beside a crowd a solid is near in space and looks different: that must not end
+            // levels.
             if (finest.options.group && std::isfinite(candidate.error))
                 prove(candidate, finest, std::numeric_limits<double>::infinity(), job);
         }
@@ -76,9 +77,7 @@ void propose_near_solids(ProposalRound& round) {
 }
 
 void propose_primitives(ProposalRound& round) {
-    if (round.finest.options.environment)
-        return;
-    if (round.painted)
+    if (round.finest.options.environment || round.painted)
         return;
     if (!round.by_pictures) {
         round.candidates.insert(round.candidates.end(), round.near_solids.begin(),

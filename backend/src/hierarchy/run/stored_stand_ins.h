@@ -12,14 +12,15 @@ namespace lodestone::hierarchy {
 
 class StoredStandIns {
 public:
-    /// The store must outlive it. Empty with `ignore`, and where the store cannot be read or is of another version: then
-    /// everything is built again.
+    /// The store must outlive it. Empty with `ignore`, and where the store cannot be read or is of
+    /// another version: then everything is built again.
     StoredStandIns(const segment::Store& store, bool ignore);
 
-    /// Gives an object the stand-ins of this build hash, or those that the store held before; the finest representation stays ours.
-    /// Where materials have other finishes, so have those of its stand-ins, which are then what a
-    /// build would make. What it places must have its own stand-ins already. False when there are
-    /// none, a file of them is gone, or materials that were one are now two, or the other way.
+    /// Gives an object the stand-ins of this build hash, or those that the store held before; the
+    /// finest representation stays ours. Where materials have other finishes, so have those of its
+    /// stand-ins, which are then what a build would make. What it places must have its own
+    /// stand-ins already. False when there are none, a file of them is gone, or materials that were
+    /// one are now two, or the other way.
     bool adopt(Model& model, ObjectIndex index, Hash build_hash, MaterialPalette& palette) const;
 
 private:

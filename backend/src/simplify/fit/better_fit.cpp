@@ -24,6 +24,12 @@ std::vector<uint32_t> earlier_vertices(const CollapseMesh& before, const Collaps
     return out;
 }
 
+void set_points(CollapseMesh& mesh, std::vector<glm::dvec3>&& points) {
+    mesh.points = std::move(points);
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+        mesh.facets[t] = glm::vec3(mesh.facet_of(mesh.triangles[t]));
+}
+
 /// A level before and after its fit, with the errors of both.
 struct FitComparison {
     const CollapseMesh& before;
@@ -103,9 +109,7 @@ struct FitComparison {
         }
         if (std::find(back.begin(), back.end(), uint8_t{1}) == back.end())
             return false;
-        mesh.points = std::move(points);
-        for (size_t t = 0; t < mesh.triangles.size(); ++t)
-            mesh.facets[t] = glm::vec3(mesh.facet_of(mesh.triangles[t]));
+        set_points(mesh, std::move(points));
         return true;
     }
 };
@@ -134,9 +138,7 @@ bool keep_better(CollapseMesh& before, CollapseMesh& after, const Mesh& source,
     }
     if (!kept)
         return false;
-    after.points = std::move(points);
-    for (size_t t = 0; t < after.triangles.size(); ++t)
-        after.facets[t] = glm::vec3(after.facet_of(after.triangles[t]));
+    set_points(after, std::move(points));
     return true;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Better fit: of a level before and after its fit, what is nearer to the original, vertex by vertex.
+// Better fit: of a level before and after its fit, what is nearer to the original, vertex by
+// vertex.
 #pragma once
 
 #include "simplify/fit/level_errors.h"

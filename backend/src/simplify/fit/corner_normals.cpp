@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <functional>
 #include <span>
 #include <utility>
 
@@ -205,7 +203,7 @@ std::vector<glm::vec3> corner_normals(CollapseMesh& mesh, const Mesh& source,
     const size_t count = mesh.triangles.size();
     const SamplesByTriangle by_triangle(places, samples);
     std::vector<float> off(count, 0.0f);
-    const auto for_each_triangle = [&](const std::function<void(uint32_t)>& act) {
+    const auto for_each_triangle = [&](const auto& act) {
         parallel_for((count + kTrianglesAtOnce - 1) / kTrianglesAtOnce, [&](size_t chunk) {
             job.check();
             const size_t end = std::min(count, (chunk + 1) * kTrianglesAtOnce);

@@ -10,8 +10,8 @@ namespace lodestone::simplify {
 /// Makes the levels of one original better. Keeps references to it and to the options.
 class LevelFitter {
 public:
-    /// `opened`: the mesh that `source` was opened as. `puts_back`: a few triangles may be collapsed
-    /// and put back where the level is farthest off.
+    /// `opened`: the mesh that `source` was opened as. `puts_back`: a few triangles may be
+    /// collapsed and put back where the level is farthest off.
     LevelFitter(const Mesh& source, const CollapseMesh& opened, const SimplifyOptions& options,
                 bool puts_back)
         : source_(source), options_(options), puts_back_(puts_back), meter_(source, opened) {}

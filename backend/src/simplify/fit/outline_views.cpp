@@ -24,7 +24,8 @@ std::array<glm::vec3, 2> axes_of(int view) {
     return {glm::vec3(right), glm::vec3(glm::cross(ahead, right))};
 }
 
-/// The number of pixels, 0 to kSide, whose middles lie before a coordinate; 0 for what is no number.
+/// The number of pixels, 0 to kSide, whose middles lie before a coordinate; 0 for what is no
+/// number.
 int pixels_before(float coordinate) {
     constexpr auto kEnd = static_cast<float>(OutlineViews::kSide);
     return static_cast<int>(std::min(std::max(0.0f, coordinate + 0.5f), kEnd));

@@ -34,10 +34,10 @@ inline constexpr FitOptions kFastFit{8, 0.5, 1, 1, 2, false, 0.1f, 0};
 
 /// Least squares of the distances from samples of the original (`source`, the mesh that `mesh` was
 /// opened from) to the surface they are nearest to, over all vertices together but those on borders
-/// of chunks, which stay; samples on open borders count their distances to the outline, too. Closed parts of at most 8 triangles (bricks,
-/// boards) stay as they are. `mesh` must be compact and `adjacency` its own. No triangle turns
-/// over. A mesh with other poses is left as it is. source: Hoppe et al. 1993 (mesh optimization),
-/// with distances to planes.
+/// of chunks, which stay; samples on open borders count their distances to the outline, too. Closed
+/// parts of at most 8 triangles (bricks, boards) stay as they are. `mesh` must be compact and
+/// `adjacency` its own. No triangle turns over. A mesh with other poses is left as it is. source:
+/// Hoppe et al. 1993 (mesh optimization), with distances to planes.
 void fit_surface(CollapseMesh& mesh, const Mesh& source, Adjacency& adjacency,
                  const FitOptions& options, const Job& job);
 
