@@ -42,8 +42,8 @@ Mesh without_hidden(const Mesh& mesh, const std::vector<uint8_t>& seen,
     return shell;
 }
 
-/// As many things of one size would show as much alike: the square of all area over the sum of the
-/// squares of each occurrence's. source: Simpson 1949.
+/// The number of things of one size that would be as alike as the occurrences are: the square of
+/// all area over the sum of the squares of theirs. source: Simpson 1949.
 double things_alike(const Mesh& shell, const std::vector<uint32_t>& occurrence) {
     std::map<uint32_t, double> areas;
     for (size_t i = 0; i < shell.triangles.size(); ++i)
