@@ -2,7 +2,7 @@
 #include "simplify/simplify.h"
 
 #include "simplify/collapse/collapse_pass.h"
-#include "simplify/fit/corner_normals.h"
+#include "simplify/fit/level_attributes.h"
 #include "simplify/fit/level_fitter.h"
 #include "simplify/fit/surface_fit.h"
 
@@ -120,9 +120,9 @@ std::vector<Result> chain(const Mesh& mesh, OtherPositions others, bool tracked,
             if (fitter) {
                 Adjacency around;
                 CollapseMesh level = fitter->fit(working, adjacency, around, job);
-                results.push_back(taken(level, corner_normals(level, mesh, around, job)));
+                results.push_back(taken(level, fit_attributes(level, mesh, around, job)));
             } else {
-                results.push_back(taken(working, corner_normals(working, mesh, adjacency, job)));
+                results.push_back(taken(working, fit_attributes(working, mesh, adjacency, job)));
             }
             last = working.live;
         }

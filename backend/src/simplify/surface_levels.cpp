@@ -2,7 +2,7 @@
 #include "simplify/surface_levels.h"
 
 #include "simplify/collapse/collapse_pass.h"
-#include "simplify/fit/corner_normals.h"
+#include "simplify/fit/level_attributes.h"
 #include "simplify/fit/surface_fit.h"
 
 #include <algorithm>
@@ -181,7 +181,7 @@ public:
         if (!reached && working_.live == before)
             return false;
         fit_surface(working_, mesh_, adjacency_, kFastFit, job_);
-        const std::vector<glm::vec3> normals = corner_normals(working_, mesh_, adjacency_, job_);
+        const std::vector<glm::vec3> normals = fit_attributes(working_, mesh_, adjacency_, job_);
         auto level = std::make_shared<SurfaceLevel>(level_);
         std::vector<uint32_t> places;
         out.levels.push_back(extract(working_, &places, normals));

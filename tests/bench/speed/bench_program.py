@@ -5,14 +5,17 @@
     /usr/bin/python3 tests/bench/speed/bench_program.py builds [--write]
     /usr/bin/python3 tests/bench/speed/bench_program.py crowds [--write]
     /usr/bin/python3 tests/bench/speed/bench_program.py surfaces [--write] [-- SIDE ...]
+    /usr/bin/python3 tests/bench/speed/bench_program.py textures [--write] [-- FILE.obj ...]
     /usr/bin/python3 tests/bench/speed/bench_program.py group [--write] [-- --flat 1000 STORE ...]
 
 Builds the program in build/release first; its source (bench_builds.cpp, bench_cut.cpp,
-bench_crowds.cpp, bench_group.cpp, bench_surfaces.cpp) tells what it measures and what the words
-after -- are. No number makes it fail.
+bench_crowds.cpp, bench_group.cpp, bench_surfaces.cpp, peers/bench_textures.cpp) tells what it
+measures and what the words after -- are; bench_textures takes the textured models of
+$LODESTONE_DATA (default ../shared/data) where none are given. No number makes it fail.
 """
 
 import argparse
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -27,6 +30,7 @@ TITLES = {
     "group": "Grouping",
     "crowds": "Crowds from afar",
     "surfaces": "Large surfaces",
+    "textures": "Textures on simplified models",
 }
 
 
@@ -38,6 +42,11 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     return parser.parse_args(arguments)
 
 
+def textured_models() -> list[str]:
+    data = Path(os.environ.get("LODESTONE_DATA") or benching.ROOT.parent / "shared" / "data")
+    return [str(model) for model in sorted((data / "models").glob("*_uv.obj"))]
+
+
 def main() -> None:
     options = options_of()
     name = f"bench_{options.program}"
@@ -46,6 +55,11 @@ def main() -> None:
         sys.exit(f"bench_program.py: {name} cannot be built; cmake --preset release first")
     busy = benching.load()
     told = benching.Told()
+    if options.program == "textures" and not options.words:
+        options.words = textured_models()
+        if not options.words:
+            print("bench_program.py: skipped, there are no textured models")
+            return
     command = [str(BUILD / "tests" / name), *options.words]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as running:
         for line in running.stdout or ():

@@ -2,7 +2,7 @@
 #include "simplify/fit/corner_normals.h"
 
 #include "base/parallel.h"
-#include "simplify/fit/wedge_normals.h"
+#include "simplify/fit/wedge_fit.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -17,15 +17,6 @@
 namespace lodestone::simplify {
 namespace {
 
-/// The original's triangles that are sampled, for each triangle of the mesh.
-/// Taste: more tell the shading of small triangles better, in more time.
-constexpr double kSourcesEach = 16;
-// The largest share of them.
-// Taste: a larger one takes more time with levels near the original.
-constexpr double kMostSources = 0.5;
-// The fewest of them.
-// Taste: fewer do not tell the shading of coarse levels.
-constexpr size_t kLeastSources = 1000;
 /// The fewest samples on a triangle.
 /// Taste: fewer do not tell its shading.
 constexpr size_t kSamplesToShade = 4;
@@ -189,17 +180,12 @@ void share_normals(const CollapseMesh& mesh, const Adjacency& adjacency, uint32_
 
 }  // namespace
 
-std::vector<glm::vec3> corner_normals(CollapseMesh& mesh, const Mesh& source,
-                                      const Adjacency& adjacency, const Job& job) {
-    if (mesh.normals.empty() || mesh.live == 0 || mesh.ids.empty())
+std::vector<glm::vec3> corner_normals(const FitPlaces& places, const Adjacency& adjacency,
+                                      const FitSamples& samples, const Job& job) {
+    const CollapseMesh& mesh = places.mesh();
+    const Mesh& source = places.source();
+    if (mesh.normals.empty())
         return {};
-    const FitPlaces places(mesh, source);
-    const double want = std::min(kSourcesEach * static_cast<double>(mesh.live),
-                                 kMostSources * static_cast<double>(source.triangles.size()));
-    FitSamples samples;
-    sample_surface(places, adjacency, std::max(static_cast<size_t>(want), kLeastSources), 0, job,
-                   samples);
-    fit_wedge_normals(mesh, source, adjacency, samples);
     const size_t count = mesh.triangles.size();
     const SamplesByTriangle by_triangle(places, samples);
     std::vector<float> off(count, 0.0f);

@@ -2,7 +2,7 @@
 // Corner normals: normals for triangles whose own would be shaded unlike the original.
 #pragma once
 
-#include "simplify/collapse/adjacency.h"
+#include "simplify/fit/fit_samples.h"
 
 namespace lodestone::simplify {
 
@@ -16,8 +16,8 @@ namespace lodestone::simplify {
 /// the linear function nearest to the original's normals at samples of it. Corners at one vertex
 /// that come out alike share their mean. The result is empty when no normals are carried or none is
 /// needed. `mesh` must be compact and `adjacency` its own. Any number of threads gives the same
-/// bits.
-std::vector<glm::vec3> corner_normals(CollapseMesh& mesh, const Mesh& source,
-                                      const Adjacency& adjacency, const Job& job);
+/// bits. `samples`: of the original's surface on the mesh.
+std::vector<glm::vec3> corner_normals(const FitPlaces& places, const Adjacency& adjacency,
+                                      const FitSamples& samples, const Job& job);
 
 }  // namespace lodestone::simplify

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wedge normals: normals that shade a simplified mesh, as a whole, like its original.
+// Wedge fit: normals and texture coordinates by which a simplified mesh, as a whole, looks like its
+// original.
 #pragma once
 
 #include "simplify/fit/fit_samples.h"
@@ -21,5 +22,10 @@ glm::vec3 normal_at(const Mesh& source, const FitSample& sample);
 /// compact, `adjacency` its own, `samples` taken from its surface.
 void fit_wedge_normals(CollapseMesh& mesh, const Mesh& source, const Adjacency& adjacency,
                        const FitSamples& samples);
+
+/// The same for texture coordinates: a wedge carries those of where its vertex was before that was
+/// fitted, and between wedges a stretched texture is not linear. Samples of other UV islands tell
+/// nothing.
+void fit_wedge_uvs(FitPlaces& places, const FitSamples& samples);
 
 }  // namespace lodestone::simplify
