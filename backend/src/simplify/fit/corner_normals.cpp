@@ -26,6 +26,15 @@ constexpr size_t kSamplesToShade = 4;
 constexpr float kLeastOff = 0.001f;
 // Taste: a larger part shades more triangles anew for little, and makes facets of what curves.
 constexpr float kLeft = 0.25f;
+/// What is not rough is flat where this share of a triangle's area differs (by the square) by no
+/// more than that from one normal; the rest is a rim.
+/// Taste: a smaller share makes plates of what curves, a larger one blends rims over flat sides.
+constexpr float kFlatShare = 0.5f;
+// Taste: 0.001 is 1.8 degrees, which an eye sees on a flat face.
+constexpr float kFlat = 0.001f;
+// The same for the first guess, a mean that rims are in.
+// Taste: 0.03 is 10 degrees.
+constexpr float kNearFlat = 0.03f;
 /// The same difference where the mesh is rough: it has so many triangles that nobody sees single
 /// ones, and its wedges are off by so much in the mean. What is smooth keeps its wedges: with
 /// normals of its own each triangle would be a facet.
@@ -77,15 +86,6 @@ public:
         }
         return true;
     }
-    /// The same with one normal for all of it.
-    bool solve_flat(glm::vec3* corners) const {
-        const glm::vec3 sum = sums_[0] + sums_[1] + sums_[2];
-        const float length = glm::length(sum);
-        if (!(length > 0) || !std::isfinite(length))
-            return false;
-        std::fill_n(corners, 3, sum / length);
-        return true;
-    }
 
 private:
     glm::mat3 squares_{0.0f};
@@ -112,6 +112,35 @@ float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<cons
     return area > 0 ? sum / area : 0;
 }
 
+/// The normal of most of a triangle, the same for its three corners; false when it is not flat.
+bool flat_normal(const FitSamples& samples, std::span<const PlacedSample> on, const Mesh& source,
+                 glm::vec3* corners) {
+    glm::vec3 normal(0.0f);
+    float within = 4;  // all of them
+    for (const float next : {kNearFlat, kFlat, 0.0f}) {
+        glm::vec3 sum(0.0f);
+        float flat = 0;
+        float area = 0;
+        for (const PlacedSample& placed : on) {
+            const FitSample& sample = samples[placed.index];
+            const glm::vec3 one = normal_at(source, sample);
+            const glm::vec3 off = one - normal;
+            area += sample.area;
+            if (!(glm::dot(off, off) <= within))
+                continue;
+            sum += sample.area * one;
+            flat += sample.area;
+        }
+        const float length = glm::length(sum);
+        if (!(length > 0) || !(flat >= kFlatShare * area))
+            return false;
+        normal = sum / length;
+        within = next;
+    }
+    std::fill_n(corners, 3, normal);
+    return true;
+}
+
 /// By how much the wedges of a triangle shade it unlike its samples (mean square).
 float off_by_wedges(const CollapseMesh& mesh, uint32_t triangle, const FitSamples& samples,
                     std::span<const PlacedSample> on, const Mesh& source) {
@@ -136,7 +165,7 @@ bool shade_anew(const FitSamples& samples, std::span<const PlacedSample> on, con
     }
     glm::vec3 found[3];
     if (shading.count() < kSamplesToShade ||
-        !(rough ? shading.solve(found) : shading.solve_flat(found)) ||
+        !(rough ? shading.solve(found) : flat_normal(samples, on, source, found)) ||
         !(off_by(found, samples, on, source) < kLeft * before))
         return false;
     std::copy(found, found + 3, corners);

@@ -111,6 +111,25 @@ TEST(CornerNormals, CoarseLevelsOfLumpsHaveNoFacets) {
     EXPECT_LE(level.positions.size(), 0.6 * static_cast<double>(level.triangles.size()));
 }
 
+TEST(CornerNormals, RoundThingsWithARidgeHaveNoPlates) {
+    // Half of the triangles beside the ridge, of a brow, had one normal each: they curve.
+    Mesh ridged = shapes::sphere(1, 6);
+    for (glm::vec3& p : ridged.positions)
+        p *= 1 + 0.12f * std::exp(-std::pow((p.z - 0.3f) / 0.06f, 2.0f));
+    for (const size_t target : {500, 300, 150}) {
+        const Mesh level = simplify::simplify_mesh(smooth(ridged), target);
+        double plates = 0;
+        for (size_t i = 0; i < level.triangles.size(); ++i) {
+            const Triangle& t = level.triangles[i];
+            const bool one = glm::dot(level.normals[t.x], level.normals[t.y]) > 0.9999f &&
+                             glm::dot(level.normals[t.x], level.normals[t.z]) > 0.9999f;
+            plates += one ? 0.5 * glm::length(area_vector(level, i)) : 0;
+        }
+        EXPECT_LT(plates, 0.015 * surface_area(level)) << target << " triangles";
+        EXPECT_LE(level.positions.size(), 0.65 * static_cast<double>(target));
+    }
+}
+
 TEST(CornerNormals, ARoughPlainIsLitByItsMeanNormal) {
     // Each vertex of a coarse level had the normal of one point, up to 20 degrees off.
     Mesh rough = shapes::grid(200);
