@@ -109,9 +109,10 @@ double ShadedPatches::largest_unlike_patch(const Mesh& stand_in, const ray::Mesh
         return 0;
     const double width = 2 * radius_ / least;
     const double wanted = kSamplesEach * std::numbers::pi * width * width;
-    const size_t most = wanted < static_cast<double>(seen_.size())
-                            ? std::max(kFewest / 2, static_cast<size_t>(wanted))
-                            : seen_.size();
+    const size_t most =
+        wanted < static_cast<double>(seen_.size())
+            ? std::min(seen_.size(), std::max(kFewest / 2, static_cast<size_t>(wanted)))
+            : seen_.size();
     const ray::FlushDenormals burst;
     struct SeenPatch {
         uint64_t patch;
