@@ -63,7 +63,7 @@ bool prove(StandInCandidate& candidate, const MeasuredFinest& finest, double use
     if (is_mesh && !shows_as_much_in(mesh, scene, finest, job))
         return false;
     measure_to_the_end(candidate, finest, job);
-    count_views(candidate, scene, finest, job);
+    count_views(candidate, mesh, scene, finest, job);
     const double child_error = finest.options.child_error;
     if (is_mesh && finest.shading) {
         const double least = (candidate.error - child_error) / kShading;

@@ -28,15 +28,26 @@ bool needs_view(const StandInCandidate& candidate, const MeasuredFinest& finest)
     return (finest.options.group && candidate.kind == Kind::Mesh) || may_be_farther(candidate);
 }
 
+/// Whether no point of either can be farther than that from the other, wherever it is: then nobody
+/// has to look.
+bool surely_within(double distance, const Mesh& mesh, const ray::MeshScene& scene,
+                   const MeasuredFinest& finest) {
+    return !scene.see_through() && !finest.scene().see_through() &&
+           measure::farthest_apart(finest.mesh, mesh) <= distance &&
+           measure::farthest_apart(mesh, finest.mesh) <= distance;
+}
+
 }  // namespace
 
-void count_views(StandInCandidate& candidate, const ray::MeshScene& scene,
+void count_views(StandInCandidate& candidate, const Mesh& mesh, const ray::MeshScene& scene,
                  const MeasuredFinest& finest, const Job& job) {
     candidate.viewed = true;
     if (!needs_view(candidate, finest))
         return;
     const double child_error = finest.options.child_error;
     const double most = tolerated(candidate);
+    if (surely_within(most - child_error, mesh, scene, finest))
+        return;
     const auto ways =
         may_be_farther(candidate) ? measure::ViewedWay::Both : measure::ViewedWay::ToStandIn;
     const double seen = finest.views->worst(scene, ways, most - child_error, job) + child_error;
@@ -52,7 +63,7 @@ void count_views(StandInCandidate& candidate, const MeasuredFinest& finest, cons
         return;
     Mesh solid;
     const Mesh& mesh = traced_mesh(candidate, solid);
-    count_views(candidate, ray::MeshScene(mesh, skin_of(candidate, finest)), finest, job);
+    count_views(candidate, mesh, ray::MeshScene(mesh, skin_of(candidate, finest)), finest, job);
 }
 
 }  // namespace lodestone::hierarchy

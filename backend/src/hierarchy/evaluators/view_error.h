@@ -8,8 +8,8 @@
 namespace lodestone::hierarchy {
 
 /// Makes the error of a candidate what is seen from the worst side, where that is more: `viewed`.
-/// `scene` holds what rays meet of it (traced_mesh).
-void count_views(StandInCandidate& candidate, const ray::MeshScene& scene,
+/// `mesh` is what rays meet of it (traced_mesh), `scene` holds that.
+void count_views(StandInCandidate& candidate, const Mesh& mesh, const ray::MeshScene& scene,
                  const MeasuredFinest& finest, const Job& job);
 /// The same of one of which no scene was made.
 void count_views(StandInCandidate& candidate, const MeasuredFinest& finest, const Job& job);

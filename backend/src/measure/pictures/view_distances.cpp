@@ -3,6 +3,9 @@
 
 #include "base/parallel.h"
 #include "measure/pictures/cube_views.h"
+#include "measure/visible/visible_sampler.h"
+
+#include <glm/common.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +18,12 @@ namespace {
 /// The pixels of a picture.
 /// Taste: more see smaller things, in time in proportion.
 constexpr double kPixels = 576;
+/// The same where the whole is eight pixels large or less for those who use it.
+/// Taste: as kPixels.
+constexpr double kFewPixels = 144;
+/// The distance that counts as near, over the radius, from which on there are few.
+/// Law: a quarter of the radius is an eighth of the size.
+constexpr double kCoarse = 0.25;
 /// The share of a picture's pixels that may be farther off.
 /// Taste: a larger value loses thin parts, a smaller one counts single spikes.
 constexpr double kMostFar = 0.001;
@@ -72,10 +81,15 @@ double most_of(std::vector<double>& far, size_t pixels) {
 }  // namespace
 
 ViewDistances::ViewDistances(const Mesh& finest, const ray::MeshScene& scene)
-    : finest_(finest), scene_(scene), directions_(cube_directions()) {}
+    : finest_(finest),
+      scene_(scene),
+      directions_(cube_directions()),
+      radius_(radius_of(finest)),
+      fine_{kPixels, {}, {}},
+      coarse_{kFewPixels, {}, {}} {}
 
-void ViewDistances::aim() const {
-    rays_.clear();
+void ViewDistances::aim(ViewPictures& pictures) const {
+    pictures.rays.clear();
     const std::vector<glm::dvec3> corners = corners_of(finest_);
     if (corners.empty())
         return;
@@ -83,7 +97,7 @@ void ViewDistances::aim() const {
         const glm::dvec3& towards = directions_[view];
         const PictureFrame frame(corners, towards);
         const glm::dvec3 size = frame.high - frame.low;
-        const double cell = std::sqrt(size.x * size.y / kPixels);
+        const double cell = std::sqrt(size.x * size.y / pictures.pixels);
         // A flat thing is a line from its side: nothing to see.
         if (!(cell > 0) || !std::isfinite(cell) || std::max(size.x, size.y) > cell * kPixels)
             continue;
@@ -94,31 +108,33 @@ void ViewDistances::aim() const {
             const int row = pixel / columns;
             const double x = frame.low.x + (pixel % columns + 0.5) * size.x / columns;
             const double y = frame.low.y + (row + 0.5) * size.y / rows;
-            rays_.push_back({x * frame.right + y * frame.up + front * towards, view});
+            pictures.rays.push_back({x * frame.right + y * frame.up + front * towards, view});
         }
     }
 }
 
-const std::vector<ViewDistances::ViewRay>& ViewDistances::rays(const Job& job) const {
-    std::call_once(taken_, [&] {
-        aim();
-        parallel_for((rays_.size() + kBlock - 1) / kBlock, [&](size_t block) {
+const std::vector<ViewDistances::ViewRay>& ViewDistances::rays(double near, const Job& job) const {
+    ViewPictures& pictures = near < kCoarse * radius_ ? fine_ : coarse_;
+    std::vector<ViewRay>& out = pictures.rays;
+    std::call_once(pictures.taken, [&] {
+        aim(pictures);
+        parallel_for((out.size() + kBlock - 1) / kBlock, [&](size_t block) {
             job.check();
             const ray::FlushDenormals burst;
-            for (size_t i = block * kBlock; i < std::min(rays_.size(), (block + 1) * kBlock); ++i) {
-                ViewRay& one = rays_[i];
+            for (size_t i = block * kBlock; i < std::min(out.size(), (block + 1) * kBlock); ++i) {
+                ViewRay& one = out[i];
                 const ray::RayHit hit = scene_.first_hit(one.origin, -directions_[one.view]);
                 one.seen = hit.hit;
                 one.point = hit.point;
             }
         });
     });
-    return rays_;
+    return out;
 }
 
 double ViewDistances::worst(const ray::MeshScene& stand_in, ViewedWay ways, double near,
                             const Job& job) const {
-    const std::vector<ViewRay>& asked = rays(job);
+    const std::vector<ViewRay>& asked = rays(near, job);
     std::vector<double> off(asked.size(), -1);  // below 0: nothing is there
     parallel_for((asked.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
@@ -159,6 +175,19 @@ double ViewDistances::worst(const ray::MeshScene& stand_in, ViewedWay ways, doub
         }
         out = std::max(out, most_of(far, pixels));
     }
+    return out;
+}
+
+double farthest_apart(const Mesh& from, const Mesh& to) {
+    double out = std::numeric_limits<double>::infinity();
+    Box3 box;
+    for (const glm::dvec3& point : corners_of(from))
+        box.add(point);
+    if (box.empty())
+        return out;
+    // A corner of a box is the farthest of all its points from any point.
+    for (const glm::dvec3& point : corners_of(to))
+        out = std::min(out, glm::length(glm::max(point - box.low, box.high - point)));
     return out;
 }
 

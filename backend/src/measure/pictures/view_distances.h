@@ -5,6 +5,7 @@
 #include "base/job.h"
 #include "ray/mesh_scene.h"
 
+#include <array>
 #include <mutex>
 #include <vector>
 
@@ -16,7 +17,8 @@ enum class ViewedWay : uint8_t { ToStandIn, Both };
 /// Distances of points that are spread over a surface do not tell what one picture shows: a thing
 /// in an opening, or on one of the narrow sides, is little of the surface and much of the picture
 /// from there. Orthographic pictures are taken along 26 directions, to the faces, edges and corners
-/// of a cube, of some 600 pixels around the finest each.
+/// of a cube, of some 600 pixels around the finest each; of a quarter of these where what counts as
+/// near is an eighth of the size or more, so that no eye for whom that is a pixel sees as many.
 class ViewDistances {
 public:
     /// Keeps references to the mesh and its scene; the pictures are taken when they are first asked
@@ -38,14 +40,24 @@ private:
         bool seen = false;  // it meets the finest, there:
         glm::dvec3 point{0.0};
     };
-    void aim() const;
-    const std::vector<ViewRay>& rays(const Job& job) const;
+    /// Pictures of about so many pixels each.
+    struct ViewPictures {
+        double pixels;
+        std::once_flag taken;  // fills rays where they lead
+        std::vector<ViewRay> rays;
+    };
+    void aim(ViewPictures& pictures) const;
+    const std::vector<ViewRay>& rays(double near, const Job& job) const;
 
     const Mesh& finest_;
     const ray::MeshScene& scene_;
     std::vector<glm::dvec3> directions_;  // towards the eye
-    mutable std::once_flag taken_;        // fills rays_ where they lead
-    mutable std::vector<ViewRay> rays_;
+    double radius_;
+    mutable ViewPictures fine_, coarse_;
 };
+
+/// No point of `from` is farther from the nearest vertex of `to` than that, metres; infinite where
+/// there is none.
+double farthest_apart(const Mesh& from, const Mesh& to);
 
 }  // namespace lodestone::measure

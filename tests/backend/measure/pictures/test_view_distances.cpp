@@ -66,6 +66,27 @@ TEST_F(ViewDistance, SpikesOfAPixelDoNotCount) {
     EXPECT_NEAR(worst(with_box(plate, {20, 20, 10}, {4, 4, 1}), plate), 1, 0.1);
 }
 
+TEST_F(ViewDistance, AFewPixelsSeeWhatIsLarge) {
+    const Mesh ball = shapes::sphere(1);
+    // From a quarter of the radius on there are a quarter of the pixels.
+    EXPECT_NEAR(worst(ball, shapes::sphere(0.6), ViewedWay::Both, 0.25), 0.4, 1e-2);
+    EXPECT_NEAR(worst(ball, shapes::sphere(0.6), ViewedWay::Both, 0.24), 0.4, 1e-2);
+    const Mesh chimney = with_box(shapes::box({0, 0, 0}, {4, 4, 4}), {1.6, 1.6, 4}, {0.8, 0.8, 2});
+    EXPECT_NEAR(worst(chimney, shapes::box({0, 0, 0}, {4, 4, 4}), ViewedWay::Both, 1), 2, 0.2);
+}
+
+TEST_F(ViewDistance, NothingIsFartherApartThanItsBoundSays) {
+    using measure::farthest_apart;
+    EXPECT_EQ(farthest_apart({}, shapes::cube()), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(farthest_apart(shapes::cube(), {}), std::numeric_limits<double>::infinity());
+    const Mesh box = shapes::box({0, 0, 0}, {3, 4, 12});
+    EXPECT_NEAR(farthest_apart(box, box), 13, 1e-6) << "from corner to corner";
+    const Mesh middle = shapes::box({1.4, 1.9, 5.9}, {1.6, 2.1, 6.1});
+    EXPECT_NEAR(farthest_apart(box, middle), std::sqrt(1.6 * 1.6 + 2.1 * 2.1 + 6.1 * 6.1), 1e-6);
+    for (const Mesh& mesh : {box, middle, shapes::sphere(2)})
+        EXPECT_LE(worst(box, mesh), std::max(farthest_apart(box, mesh), farthest_apart(mesh, box)));
+}
+
 TEST_F(ViewDistance, PlacesAndSizesDoNotMatter) {
     const Mesh ball = shapes::sphere(1, 2);
     const Mesh cube = shapes::cube();
