@@ -75,10 +75,10 @@ double error_to_flatten(OpenedGroup& group, uint64_t wanted, uint64_t most, cons
     constexpr double kJoined = 1.5;
     // The error of the reference over that of the first stand-in.
     // Taste: a larger value flattens to fewer triangles, which errors are known less well by.
-    constexpr double kFiner = 1.0 / 8;
+    constexpr double kFiner = 1.0 / 4;
     // The error of the reference, over the radius, of groups that only solids can stand for.
     // Taste: as kFiner.
-    constexpr double kLeast = 1.0 / 16;
+    constexpr double kLeast = 1.0 / 8;
     // Taste: a larger number flattens small groups finer than the reference asks.
     constexpr uint64_t kFewTriangles = 1000;
     // Things that are larger than this power of two over the size are not fine: errors that are

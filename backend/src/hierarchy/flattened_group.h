@@ -24,7 +24,7 @@ FlattenedGroup flatten_group(OpenedGroup& group, double error, const MeshSource&
                              const Job& job);
 
 /// At which error to flatten a group: much below that of the finest stand-in that could cost less
-/// than the children do at its error, and at most a sixteenth of the size. Flat meshes of what its
+/// than the children do at its error, and at most an eighth of the size. Flat meshes of what its
 /// children share with other groups are dear: the less a group can save, the coarser its reference
 /// may be. Coarser only to have at most `wanted` triangles, or little more than at an error that is
 /// still fine (1/32 of the size); and then where those would be more than `most`.
