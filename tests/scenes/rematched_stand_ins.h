@@ -46,8 +46,10 @@ inline std::vector<Material> paint(Mesh& mesh) {
 }
 
 /// `mesh` is painted. `coarse`: by pictures as a build takes them of what is far from the finest
-/// anyway, a quarter of the samples. Composites have at most `most_solids`.
-inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_solids = 32) {
+/// anyway, a quarter of the samples. Composites have at most `most_solids`. All are matched for
+/// that error, over the radius.
+inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_solids = 32,
+                                        double error = 0) {
     const std::vector<Material> materials = paint(mesh);
     image::TexelCache texels;
     hierarchy::BuildSettings settings;
@@ -81,6 +83,7 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     std::vector<Rematched> out;
     const auto add = [&](const std::string& name, hierarchy::StandInCandidate candidate,
                          Mesh drawn) {
+        candidate.error = error * bound.radius;
         match_brightness(candidate, finest, taken, std::numeric_limits<double>::infinity(), {});
         glm::dvec3 light(0.0);
         for (const measure::AgreementReference& picture : pictures)

@@ -17,6 +17,10 @@ namespace {
 // pixels large or more, and is matched to look alike.
 // Taste: a larger value matches fewer levels.
 constexpr double kUsedNear = 1.0 / 12;
+// An error over the radius. A level that is used from this error on is seen where the whole is 16
+// pixels large or less: few samples tell how bright these are.
+// Law: an eighth of the radius is a sixteenth of the size.
+constexpr double kUsedFar = 1.0 / 8;
 
 /// Makes what glows of a candidate glow as much as the finest does.
 void match_glow(StandInCandidate& candidate,
@@ -58,8 +62,12 @@ void match_brightness(StandInCandidate& candidate, const MeasuredFinest& finest,
     if (candidate.state != CandidateState::Measured || !is_matched(finest, used_to))
         return;
     using Pictures = measure::AgreementReference;
-    const Pictures& reference =
-        pictures.take(finest.mesh, finest.glows ? Pictures::kSide : Pictures::kBrightSide, job);
+    const double child_error = finest.options.child_error;
+    const double own = candidate.error - child_error;
+    const Pictures& reference = finest.glows ? pictures.take(finest.mesh, Pictures::kSide, job)
+                                : own >= kUsedFar * finest.size
+                                    ? pictures.take_few(job)
+                                    : pictures.take(finest.mesh, Pictures::kBrightSide, job);
     ray::SkinPtr current = finest.skin_of(candidate.materials);
     Mesh solid;
     const auto traced = reference.trace(traced_mesh(candidate, solid), current, job);
@@ -85,8 +93,6 @@ void match_brightness(StandInCandidate& candidate, const MeasuredFinest& finest,
         return;
     // Near something else that is left a point may have been all that closed a gap. Where the error
     // is as large as the pictures' pixels all that they show counts, half.
-    const double child_error = finest.options.child_error;
-    const double own = candidate.error - child_error;
     const double seen = own < kUsedNear * finest.size
                             ? reference.gap_error(traced, current, own)
                             : kPictures * reference.of(traced, current).error;

@@ -24,6 +24,13 @@ const measure::AgreementReference& FinestPictures::take(const Mesh& seen, int si
     return *pictures_;
 }
 
+const measure::AgreementReference& FinestPictures::take_few(const Job& job) {
+    if (!few_)
+        few_.emplace(finest_->mesh, finest_->scene(), finest_->skin, finest_->options.seed,
+                     measure::AgreementReference::kFewSide, job);
+    return *few_;
+}
+
 const measure::AgreementReference& FinestPictures::taken() const {
     if (!pictures_)
         fail(Status::Internal, "no pictures were taken of the finest");

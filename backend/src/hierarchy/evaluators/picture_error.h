@@ -24,6 +24,8 @@ public:
 
     /// `seen`: the finest, or what of it can be seen. `side`: one of AgreementReference's.
     const measure::AgreementReference& take(const Mesh& seen, int side, const Job& job);
+    /// Few samples of all of the finest, for what is 16 pixels large or less where it is used.
+    const measure::AgreementReference& take_few(const Job& job);
     /// Those that are there. Throws Error: Internal, where take() was never called.
     const measure::AgreementReference& taken() const;
 
@@ -33,6 +35,7 @@ public:
 private:
     const MeasuredFinest* finest_;
     std::optional<measure::AgreementReference> pictures_;
+    std::optional<measure::AgreementReference> few_;
     std::optional<glm::dvec3> glow_;
 };
 

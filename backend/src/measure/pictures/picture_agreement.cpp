@@ -20,7 +20,7 @@ namespace lodestone::measure {
 namespace {
 
 // The sides of pixels in samples that are tried, where they divide the side of the picture.
-// Law: the divisors of kSide (90), kCoarseSide (45) and kBrightSide (30) above 1.
+// Law: the divisors of kSide (90), kCoarseSide (45), kBrightSide (30) and kFewSide (18) above 1.
 constexpr std::array<int, 11> kPixelSides{2, 3, 5, 6, 9, 10, 15, 18, 30, 45, 90};
 // The share of the sky in the light on a surface that faces the sun. Nothing shades the sky:
 // pictures show it so, as one ambient light.

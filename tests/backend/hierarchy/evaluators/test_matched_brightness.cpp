@@ -22,6 +22,15 @@ namespace {
 
 class Brightness : public WithRays {};
 
+Mesh table_of_boxes() {
+    Mesh table = shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75});
+    for (const double x : {-0.9, 0.9}) {
+        for (const double y : {-0.4, 0.4})
+            append(table, shapes::box({x - 0.03, y - 0.03, 0}, {x + 0.03, y + 0.03, 0.7}), {});
+    }
+    return table;
+}
+
 ray::SkinPtr skin_of(const Model& model, const Representation& level, image::TexelCache& texels) {
     std::vector<Material> materials;
     for (const uint32_t index : level.materials)
@@ -222,12 +231,15 @@ TEST_F(Brightness, ATextureIsBrightenedByItsScaleAndMixturesBothWays) {
     EXPECT_EQ(inner.base_color.x, 0.5) << "what others share stays";
 }
 
-TEST_F(Brightness, EveryKindOfStandInIsFoundAgainBySixteenTimesTheRays) {
-    Mesh table = shapes::box({-1, -0.5, 0.7}, {1, 0.5, 0.75});
-    for (const double x : {-0.9, 0.9}) {
-        for (const double y : {-0.4, 0.4})
-            append(table, shapes::box({x - 0.03, y - 0.03, 0}, {x + 0.03, y + 0.03, 0.7}), {});
+TEST_F(Brightness, WhatIsUsedFromAfarIsAboutAsBrightByFewSamples) {
+    for (const double error : {0.125, 0.5, 2.0}) {
+        for (const Rematched& found : rematched(table_of_boxes(), false, 8, error))
+            EXPECT_LT(found.brightness, 5) << found.kind << " at " << error;
     }
+}
+
+TEST_F(Brightness, EveryKindOfStandInIsFoundAgainBySixteenTimesTheRays) {
+    const Mesh table = table_of_boxes();
     std::set<std::string> kinds;
     for (const Mesh& mesh : {table, foliage::tree(100)}) {
         for (const Rematched& found : rematched(mesh, false, 8)) {
