@@ -25,7 +25,7 @@ uint32_t samples_of(const Mesh& finest, bool environment, const BuildSettings& s
     constexpr uint32_t kOfEnvironment = 8;
     // The samples of a triangle where they are few.
     // Taste: more know errors better, in time in proportion.
-    constexpr uint64_t kOfTriangle = 8;
+    constexpr uint64_t kOfTriangle = 4;
     // The fewest samples of a mesh.
     // Taste: more know the errors of simple meshes better, in time in proportion.
     constexpr uint64_t kFewest = 512;
@@ -33,6 +33,12 @@ uint32_t samples_of(const Mesh& finest, bool environment, const BuildSettings& s
         return kOfEnvironment * settings.samples;
     return static_cast<uint32_t>(std::min<uint64_t>(
         settings.samples, std::max(kFewest, kOfTriangle * finest.triangles.size())));
+}
+
+/// Few samples come with few rays, but colors and solids are made by them: twice the share.
+uint64_t rays_of(uint32_t samples, const BuildSettings& settings) {
+    const uint64_t twice = 2 * uint64_t{samples};
+    return twice < settings.samples ? settings.rays * twice / settings.samples : settings.rays;
 }
 
 }  // namespace
@@ -67,18 +73,20 @@ MeasuredFinest measure_finest(const Mesh& mesh, std::span<const Material> materi
     out.materials.assign(materials.begin(), materials.end());
     out.skin = out.skin_of(materials);
     out.looks = std::make_unique<measure::LookPalette>();
+    const uint32_t samples = samples_of(mesh, options.environment, settings);
     const std::vector<uint16_t> looks = out.looks->of(mesh, materials);
     auto reference = std::make_unique<measure::DeviationReference>(
         mesh,
-        measure::DeviationOptions{samples_of(mesh, options.environment, settings), settings.samples,
-                                  options.seed, options.group ? kRaysPerTriangle : 0},
+        measure::DeviationOptions{samples, settings.samples, options.seed,
+                                  options.group ? kRaysPerTriangle : 0},
         measure::SurfaceLooks{looks, out.looks.get(), out.skin}, job);
     out.opacity = measure::mean_opacity(mesh, *out.skin, options.seed);
     out.cast = reference->take_cast_points();  // of the same rays
     out.reference = std::move(reference);
-    out.attributes = measure::measure_visible(mesh, out.sampler(), out.skin,
-                                              out.visible_options(settings.rays), {}, out.cast, job)
-                         .attributes;
+    out.attributes =
+        measure::measure_visible(mesh, out.sampler(), out.skin,
+                                 out.visible_options(rays_of(samples, settings)), {}, out.cast, job)
+            .attributes;
     out.glows = std::any_of(materials.begin(), materials.end(), emits);
     out.layered = options.in_layers && is_flat(out.attributes);
     out.views = std::make_unique<const measure::ViewDistances>(mesh, out.scene());

@@ -58,6 +58,15 @@ TEST_F(MeasuredFinest, TheSameRaysFindTheSame) {
     EXPECT_EQ(once.moments, again.moments);
 }
 
+TEST_F(MeasuredFinest, AFewTrianglesHaveFewRays) {
+    const Attributes few = measured(shapes::torus(6, 4)).attributes;
+    const Attributes many = measured(shapes::torus(48, 24)).attributes;
+    EXPECT_LT(few.rays, many.rays);
+    EXPECT_GE(few.rays, many.rays / 2) << "colors are told by them";
+    EXPECT_EQ(many.rays, hierarchy::BuildSettings{}.rays);
+    EXPECT_LT(few.relative_error, 0.05);
+}
+
 TEST_F(MeasuredFinest, AGroupIsToldWhichOfItsTrianglesCanBeSeen) {
     Mesh mesh = shapes::box({-1, -1, -1}, {1, 1, 1});
     const size_t outside = mesh.triangles.size();
