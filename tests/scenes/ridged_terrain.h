@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "model/mesh.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lodestone::terrains {
@@ -40,8 +41,16 @@ inline double height_at(double x, double y) {
     return height;
 }
 
-/// A sheet of 2 * (side - 1)^2 triangles over a square of `size` metres, with normals.
-inline Mesh terrain(uint32_t side, double size = 1) {
+/// The same east of the middle, and a plain west of it.
+inline double half_plain_height_at(double x, double y) {
+    const double hilly = std::min(std::max(5 * x - 2, 0.0), 1.0);
+    return 0.02 * smooth_noise(4 * x, 4 * y, 9) + hilly * height_at(x, y);
+}
+
+/// A sheet of 2 * (side - 1)^2 triangles over a square of `size` metres, with normals. `height`:
+/// that above a place of the unit square.
+template <typename Height>
+Mesh height_field(uint32_t side, double size, const Height& height) {
     Mesh mesh;
     mesh.positions.resize(size_t{side} * side);
     mesh.normals.resize(mesh.positions.size());
@@ -50,10 +59,10 @@ inline Mesh terrain(uint32_t side, double size = 1) {
         for (uint32_t column = 0; column < side; ++column) {
             const double x = column * step;
             const double y = static_cast<double>(row) * step;
-            const double slope_x = (height_at(x + step, y) - height_at(x - step, y)) / (2 * step);
-            const double slope_y = (height_at(x, y + step) - height_at(x, y - step)) / (2 * step);
+            const double slope_x = (height(x + step, y) - height(x - step, y)) / (2 * step);
+            const double slope_y = (height(x, y + step) - height(x, y - step)) / (2 * step);
             const size_t at = row * side + column;
-            mesh.positions[at] = glm::vec3(size * glm::dvec3(x, y, height_at(x, y)));
+            mesh.positions[at] = glm::vec3(size * glm::dvec3(x, y, height(x, y)));
             mesh.normals[at] = glm::vec3(glm::normalize(glm::dvec3(-slope_x, -slope_y, 1)));
         }
     });
@@ -66,6 +75,10 @@ inline Mesh terrain(uint32_t side, double size = 1) {
         }
     }
     return mesh;
+}
+
+inline Mesh terrain(uint32_t side, double size = 1) {
+    return height_field(side, size, height_at);
 }
 
 }  // namespace lodestone::terrains

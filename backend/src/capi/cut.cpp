@@ -11,6 +11,14 @@ using namespace lodestone::capi;
 
 namespace {
 
+/// Names the node of a cut that is farthest off.
+void set_largest(lds_cut& made, double error_px, uint32_t node) {
+    made.largest_error_px = error_px;
+    made.largest_error_node = node;
+    made.largest_error_name =
+        node == choose::kNoParent ? "" : choose::path_of(*made.table, made.cut, node);
+}
+
 /// Fills in the facts about a cut: its view, its largest error and the cuts that its classes of
 /// rays meet.
 void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
@@ -23,12 +31,18 @@ void finish(lds_model& model, lds_cut& made, View view, const Job& job) {
     made.surfaces.clear();
     made.rays.clear();
     made.resident = {};
-    made.largest_error_name.clear();
-    if (made.cut.largest_error_node != choose::kNoParent)
-        made.largest_error_name =
-            choose::path_of(*made.table, made.cut, made.cut.largest_error_node);
+    set_largest(made, made.cut.largest_error_px, made.cut.largest_error_node);
     made.rays = choose_rays(model, made.view, made.cut, job);
     made.resident = choose::resident_size(model.model, made.cut, made.rays);
+}
+
+/// Chooses the chunks of the cut's large surfaces.
+void choose_chunks(const lds_model& model, lds_cut& made) {
+    made.surfaces = choose::surface_details(model.model, made.view, made.cut);
+    for (const choose::SurfaceDetail& detail : made.surfaces) {
+        if (detail.largest_error_px > made.largest_error_px)
+            set_largest(made, detail.largest_error_px, detail.node);
+    }
 }
 
 /// Counts surfaces as they are drawn, of which the cut has counted whole levels.
@@ -38,7 +52,6 @@ void add_surfaces(const lds_cut& cut, lds_cut_summary& out) {
         out.triangles -= std::min(out.triangles, detail.whole.triangles);
         out.bytes += detail.bytes;
         out.bytes -= std::min(out.bytes, detail.whole.bytes);
-        out.largest_error_px = std::max(out.largest_error_px, detail.largest_error_px);
         if (cut.cut.nodes[detail.node].lod == 0)
             --out.originals;
     }
@@ -58,7 +71,7 @@ lds_status lds_cut_create(lds_model* model, const lds_view* view, lds_job* job, 
         made->table = model->table_for(given.kinds);
         made->cut = choose::choose_cut(*made->table, given, progress);
         finish(*model, *made, std::move(given), progress);
-        made->surfaces = choose::surface_details(model->model, made->view, made->cut);
+        choose_chunks(*model, *made);
         *out_cut = made.release();
     });
 }
@@ -110,7 +123,7 @@ lds_status lds_cut_create_within(lds_model* model, const lds_view* view, const l
             plain.modifiers.ray_classes = 0;
             finish(*model, *made, std::move(plain), progress);
         }
-        made->surfaces = choose::surface_details(model->model, made->view, made->cut);
+        choose_chunks(*model, *made);
         hand_out(out_report, report, "out_report");
         *out_cut = made.release();
     });
@@ -129,11 +142,11 @@ lds_status lds_cut_get_summary(const lds_cut* cut, lds_cut_summary* out_summary)
         out.originals = cut->cut.originals;
         out.triangles = cut->cut.triangles;
         out.bytes = cut->cut.bytes;
-        out.largest_error_px = cut->cut.largest_error_px;
+        out.largest_error_px = cut->largest_error_px;
         out.largest_error_name = cut->largest_error_name.c_str();
         const auto& chosen = cut->cut.chosen;
-        const auto at = std::lower_bound(chosen.begin(), chosen.end(), cut->cut.largest_error_node);
-        if (cut->cut.largest_error_node != choose::kNoParent && at != chosen.end())
+        const auto at = std::lower_bound(chosen.begin(), chosen.end(), cut->largest_error_node);
+        if (cut->largest_error_node != choose::kNoParent && at != chosen.end())
             out.largest_error_choice = static_cast<uint64_t>(at - chosen.begin());
         add_surfaces(*cut, out);
         for (const auto& [name, occurrences] : cut->cut.kinds)

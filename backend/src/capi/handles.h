@@ -64,6 +64,8 @@ struct lds_cut {
     std::shared_ptr<const lodestone::choose::ChoiceTable> table;  // it was chosen from this one
     std::unique_ptr<lodestone::choose::CutStepper> stepper;  // on the table; null: not stepped yet
     std::vector<std::string> paths;                          // by choice; those asked for
+    double largest_error_px = 0;                             // of what is drawn, chunks included
+    uint32_t largest_error_node = lodestone::choose::kNoParent;  // in Cut::nodes
     std::string largest_error_name;
     std::vector<glm::dvec3> colors;  // linear, by choice; empty: by kind and LOD number
     lodestone::view::ViewerSurface surface;

@@ -84,8 +84,9 @@ private:
         const uint32_t step = 1u << shift;
         for (uint32_t chunk = first; chunk < last; chunk += step) {
             const Box3& box = boxes_[shift][chunk >> shift];
+            const double error = level.surface->error_of(chunk >> shift, level.summary.error);
             double error_px = 0;
-            if (at > 0 && !box.empty() && !good(box, level.summary.error, lods_[at], error_px)) {
+            if (at > 0 && !box.empty() && !good(box, error, lods_[at], error_px)) {
                 choose(at - 1, chunk, chunk + step);
                 continue;
             }

@@ -27,6 +27,10 @@ struct StandInCandidate {
     Kind kind = Kind::Mesh;
     double error = 0;
     double max_error = 0;
+    /// Two of the things that the error of a mesh is the largest of, metres: how far its looks were
+    /// moved, and what is seen from the worst side (0: no more than all else says).
+    double moved = 0;
+    double seen = 0;
     /// The error is that or more: measuring stopped where it was of no use any more.
     bool at_least = false;
     Payload payload;

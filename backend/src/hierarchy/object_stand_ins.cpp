@@ -3,6 +3,7 @@
 
 #include "hierarchy/candidate_selection.h"
 #include "hierarchy/evaluators/brightness_match.h"
+#include "hierarchy/evaluators/chunk_error.h"
 #include "hierarchy/evaluators/distance_error.h"
 #include "hierarchy/evaluators/solid_settling.h"
 #include "hierarchy/flattened_group.h"
@@ -114,6 +115,7 @@ StandIns stand_ins_of_leaf(const Model& model, ObjectIndex leaf,
     settle_solids(round.candidates, finest, original.bound.box.low.z, job);
     paint_boxes(round.candidates, keep, finest);
     propose(ProposalStage::Kept, round);
+    measure_chunks(round.candidates, round.surface.get(), finest, job);
     out.candidates = std::move(round.candidates);
     out.surface = std::move(round.surface);
     return out;

@@ -2,6 +2,7 @@
 #include "model/surface_level.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace lodestone {
@@ -45,6 +46,7 @@ Hash hash_of(const SurfaceLevel& level) {
             hasher.value(box.low[axis]).value(box.high[axis]);
     }
     return hasher.array(std::span<const uint32_t>(level.before))
+        .array(std::span<const double>(level.errors))
         .array(std::span<const BorderPoint>(level.points))
         .array(std::span<const uint16_t>(level.touches))
         .array(std::span<const BorderCorner>(level.corners))
@@ -59,6 +61,10 @@ void check(const SurfaceLevel& level, size_t vertices, size_t triangles) {
     require(level.before.front() == 0 && level.before.back() == triangles &&
                 std::is_sorted(level.before.begin(), level.before.end()),
             "triangles in no node");
+    require(level.errors.empty() || level.errors.size() == level.nodes(),
+            "another number of errors than of nodes");
+    for (const double error : level.errors)
+        require(error >= 0 && std::isfinite(error), "an error that is none");
     const size_t points = level.points.size();
     uint32_t touch = 0;
     for (const BorderPoint& point : level.points) {

@@ -59,6 +59,9 @@ struct SurfaceLevel {
     /// The triangles of the nodes before each node, and of all. Triangles of a simpler level lie in
     /// the order of nodes; those of the original in its own.
     std::vector<uint32_t> before;
+    /// The error of each node, metres; empty: the level's own counts everywhere. A level's error is
+    /// that of nearly all of it: single nodes may have larger ones.
+    std::vector<double> errors;
     std::vector<BorderPoint> points;
     std::vector<uint16_t> touches;      // rising for each point
     std::vector<BorderCorner> corners;  // by rising vertex
@@ -66,6 +69,10 @@ struct SurfaceLevel {
 
     uint32_t nodes() const { return tree->chunks() >> shift; }
     uint32_t triangles_of(uint32_t node) const { return before[node + 1] - before[node]; }
+    /// The error of a node of a level whose own is `whole`.
+    double error_of(uint32_t node, double whole) const {
+        return errors.empty() ? whole : errors[node];
+    }
 };
 
 /// The hash of all that a level holds but its hash.

@@ -7,8 +7,8 @@ namespace lodestone::segment {
 namespace {
 
 // The number changes with the layout; a machine of the other byte order reads another one.
-// Law: "LdChunk1" in ASCII, little-endian.
-constexpr uint64_t kChunkMagic = 0x316b6e756843644cu;
+// Law: "LdChunk2" in ASCII, little-endian.
+constexpr uint64_t kChunkMagic = 0x326b6e756843644cu;
 // Law: its axis, and the sum there.
 constexpr size_t kPlane = 2;
 // Law: the low and the high end along each axis.
@@ -38,6 +38,7 @@ std::string bytes_of(const SurfaceLevel& level) {
     writer.array(planes);
     writer.array(boxes);
     writer.array(level.before);
+    writer.array(level.errors);
     writer.array(level.points);
     writer.array(level.touches);
     writer.array(level.corners);
@@ -63,6 +64,7 @@ SurfaceLevel surface_level_of(const std::string& bytes) {
     reader.array(planes);
     reader.array(boxes);
     reader.array(level.before);
+    reader.array(level.errors);
     reader.array(level.points);
     reader.array(level.touches);
     reader.array(level.corners);

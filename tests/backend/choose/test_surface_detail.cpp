@@ -5,6 +5,7 @@
 #include "choose/surface_detail.h"
 #include "hierarchy/hierarchy_build.h"
 #include "ray/mesh_scene.h"
+#include "scenes/chunk_truth.h"
 #include "scenes/open_edges.h"
 #include "scenes/ridged_terrain.h"
 #include "scenes/small_models.h"
@@ -12,8 +13,10 @@
 #include "segment/store.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <limits>
 #include <set>
 
 using namespace lodestone;
@@ -74,12 +77,13 @@ TEST(SurfaceDetail, NearChunksAreFineAndFarOnesCoarse) {
     EXPECT_GE(lods.size(), 3u);
     const SurfaceTree& tree = *model.objects[0].representations[0].surface->tree;
     for (uint32_t chunk = 0; chunk < tree.chunks(); ++chunk) {
-        const RepresentationSummary& drawn =
-            model.objects[0].representations[details[0].lods[chunk]].summary;
+        const Representation& drawn = model.objects[0].representations[details[0].lods[chunk]];
+        const double error =
+            drawn.surface->error_of(chunk >> drawn.surface->shift, drawn.summary.error);
         const Box3& box = tree.boxes[chunk];
         const double z =
             distance(Bound{box.center(), 0.5 * glm::length(box.size()), box}, view.camera.position);
-        EXPECT_TRUE(choose::good_enough(view, drawn.error, 1, z)) << "chunk " << chunk;
+        EXPECT_TRUE(choose::good_enough(view, error, 1, z)) << "chunk " << chunk;
     }
 }
 
@@ -113,16 +117,43 @@ TEST(SurfaceDetail, WhatIsDrawnIsAsNearAsItWasAskedFor) {
         const choose::DetailedCut drawn = choose::draw_surfaces(model, cut, details);
         const choose::CutNode& node = drawn.cut.nodes[details.at(0).node];
         const ray::MeshScene scene(drawn.model.objects[node.object].representations[0].mesh());
-        std::vector<double> pixels;
-        for (size_t v = 0; v < original.positions.size(); v += 3) {
-            const glm::dvec3 point(original.positions[v]);
-            const double z = glm::length(point - view.camera.position);
-            pixels.push_back(scene.closest_point(point).distance / choose::pixel_size(view, z));
+        const SurfaceTree& tree = *model.objects[0].representations[0].surface->tree;
+        const ray::MeshScene finest(original);
+        for (const std::vector<uint32_t>& triangles : chunks::triangles_by_chunk(original, tree)) {
+            std::vector<double> pixels;
+            for (const glm::dvec3& point : chunks::points_on(original, finest, triangles)) {
+                const double z = glm::length(point - view.camera.position);
+                pixels.push_back(scene.closest_point(point).distance / choose::pixel_size(view, z));
+            }
+            // Borders that were moved into those of coarser neighbors count, too.
+            EXPECT_LE(chunks::quantile_of(std::move(pixels)), 1.5 * pixel_error);
         }
-        std::sort(pixels.begin(), pixels.end());
-        // Borders that were moved into those of coarser neighbors count, too.
-        EXPECT_LE(pixels[pixels.size() * 999 / 1000], 1.5 * pixel_error);
     }
+}
+
+TEST(SurfaceDetail, AFlatFieldDoesNotPayForTheRoughestCliff) {
+    Model model;
+    models::add_leaf(model, "terrain",
+                     terrains::height_field(193, kSize, terrains::half_plain_height_at));
+    model.root = 0;
+    summarize_assemblies(model, bottom_up(model));
+    build(model, segment::Store(scratch("half")));
+    Model by_levels = model;
+    for (Representation& level : by_levels.objects[0].representations) {
+        if (level.surface == nullptr)
+            continue;
+        auto whole = std::make_shared<SurfaceLevel>(*level.surface);
+        whole->errors.clear();
+        level.surface = std::move(whole);
+    }
+    const View view = corner_view(1);
+    const choose::Cut cut = choose::choose_cut(model, view);
+    const auto own = choose::surface_details(model, view, cut);
+    const auto others = choose::surface_details(by_levels, view, cut);
+    ASSERT_EQ(own.size(), 1u);
+    ASSERT_EQ(others.size(), 1u);
+    EXPECT_LT(10 * own[0].triangles, 7 * others[0].triangles);
+    EXPECT_LE(own[0].largest_error_px, 1.0);
 }
 
 TEST(SurfaceDetail, PixelErrorZeroIsTheOriginal) {
@@ -184,6 +215,7 @@ TEST(SurfaceDetail, TheStoreGivesChunksBack) {
             continue;
         EXPECT_EQ(before->hash, after->hash);
         EXPECT_EQ(hash_of(*after), after->hash);
+        EXPECT_EQ(before->errors, after->errors);
         EXPECT_EQ(after->tree, read.objects[0].representations[0].surface->tree);
     }
     const View view = corner_view(2);
@@ -242,6 +274,11 @@ TEST(SurfaceDetail, ChunksOutOfTheirRangesAreRefused) {
     refused([](SurfaceLevel& bad) { bad.shift = 40; });
     refused([](SurfaceLevel& bad) { bad.before.back() += 1; });
     refused([](SurfaceLevel& bad) { bad.before[1] = ~uint32_t{0}; });
+    ASSERT_EQ(good.errors.size(), good.nodes());
+    refused([](SurfaceLevel& bad) { bad.errors.pop_back(); });
+    refused([](SurfaceLevel& bad) { bad.errors[1] = -1; });
+    refused([](SurfaceLevel& bad) { bad.errors[1] = std::nan(""); });
+    refused([](SurfaceLevel& bad) { bad.errors[1] = std::numeric_limits<double>::infinity(); });
     refused([](SurfaceLevel& bad) { bad.touches[0] = 0xffff; });
     refused([](SurfaceLevel& bad) { bad.corners.back().vertex = ~uint32_t{0}; });
     refused([](SurfaceLevel& bad) { bad.corners[0].point = ~uint32_t{0}; });

@@ -13,6 +13,7 @@ void set_error(StandInCandidate& candidate, const measure::SurfaceDeviation& dev
     candidate.error = finest.error_at(deviation.error);
     candidate.at_least = candidate.error > useless;
     candidate.max_error = std::max(candidate.error, finest.error_at(deviation.max));
+    candidate.moved = finest.error_at(deviation.moved);
 }
 
 }  // namespace

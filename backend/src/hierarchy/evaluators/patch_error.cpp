@@ -16,13 +16,6 @@ namespace {
 // (foliage gone bald), however near its remaining points are.
 // Taste: a larger value allows foliage that is balder.
 constexpr double kMostAreaChange = 0.25;
-// The share of the size of patches that look different which is their error.
-// Taste: a larger value keeps finer levels where colors differ.
-constexpr double kPatches = 0.5;
-// The share of the size of patches that are shaded otherwise which is their error: patches of three
-// to four pixels are to be shaded alike.
-// Taste: a larger value shades smaller patches alike, with finer levels.
-constexpr double kShading = 0.3;
 
 void raise_to(StandInCandidate& candidate, double seen) {
     candidate.error = std::max(candidate.error, seen);

@@ -8,6 +8,14 @@
 
 namespace lodestone::hierarchy {
 
+/// The share of the size of patches that look different which is their error.
+/// Taste: a larger value keeps finer levels where colors differ.
+inline constexpr double kPatches = 0.5;
+/// The share of the size of patches that are shaded otherwise which is their error: patches of three to four
+/// pixels are to be shaded alike.
+/// Taste: a larger value shades smaller patches alike, with finer levels.
+inline constexpr double kShading = 0.3;
+
 /// False for a level of the finest's materials that shows another amount of surface.
 bool shows_as_much(const Mesh& level, const MeasuredFinest& finest, const Job& job);
 

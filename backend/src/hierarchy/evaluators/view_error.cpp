@@ -8,10 +8,6 @@
 namespace lodestone::hierarchy {
 namespace {
 
-// Something seen from one side may be so many times farther off than the error: few pixels tell it.
-// Taste: a larger value lets stand-ins be farther off where they are seen from one side only.
-constexpr double kFartherInView = 1.25;
-
 double tolerated(const StandInCandidate& candidate) {
     return kFartherInView * candidate.error;
 }
@@ -53,7 +49,7 @@ void count_views(StandInCandidate& candidate, const Mesh& mesh, const ray::MeshS
     const double seen = finest.views->worst(scene, ways, most - child_error, job) + child_error;
     if (seen <= most)
         return;
-    candidate.error = seen;
+    candidate.error = candidate.seen = seen;
     candidate.max_error = std::max(candidate.max_error, seen);
 }
 

@@ -7,6 +7,11 @@
 
 namespace lodestone::hierarchy {
 
+/// Something seen from one side may be so many times farther off than the error: few pixels tell
+/// it.
+/// Taste: a larger value lets stand-ins be farther off where they are seen from one side only.
+inline constexpr double kFartherInView = 1.25;
+
 /// Makes the error of a candidate what is seen from the worst side, where that is more: `viewed`.
 /// `mesh` is what rays meet of it (traced_mesh), `scene` holds that.
 void count_views(StandInCandidate& candidate, const Mesh& mesh, const ray::MeshScene& scene,

@@ -9,16 +9,16 @@ namespace lodestone::hierarchy {
 namespace {
 
 // The triangles of a chunk.
-// Taste: a chunk is then some 45 edges wide, so that at a Pixel Error of 1 its near side is about
-// a quarter nearer than its far one. A larger value chooses more coarsely; a smaller one spends
-// more of the triangles on borders.
-constexpr size_t kTrianglesOfChunk = 4096;
+// Taste: a chunk is then some 32 edges wide, so that at a Pixel Error of 1 its near side is about
+// a fifth nearer than its far one. A larger value chooses more coarsely; a smaller one spends more
+// of the triangles on borders, and more time on the errors of chunks.
+constexpr size_t kTrianglesOfChunk = 2048;
 // The fewest triangles of a large surface.
-// Taste: 16 chunks; with fewer, most pictures need the same level of all of them.
-constexpr size_t kFewestOfSurface = 16 * kTrianglesOfChunk;
+// Taste: 32 chunks; with fewer, most pictures need the same level of all of them.
+constexpr size_t kFewestOfSurface = 32 * kTrianglesOfChunk;
 // The most cuts of a surface in two.
 // Taste: 4,096 chunks, whose boxes are looked at for each picture; a larger value follows surfaces
-// of more than 16 million triangles more closely.
+// of more than 8 million triangles more closely.
 constexpr uint32_t kDeepest = 12;
 
 }  // namespace

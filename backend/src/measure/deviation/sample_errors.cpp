@@ -97,9 +97,10 @@ SurfaceDeviation deviation_of(const std::vector<SurfaceSample>& samples,
     for (const std::vector<size_t>& indices : moved) {
         const double weight = weight_of(samples, indices);
         if (!indices.empty() && weight >= kLeastLookShare * all)
-            out.error = std::max(out.error,
+            out.moved = std::max(out.moved,
                                  quantile(samples, moves, indices, (1 - kLookQuantile) * weight));
     }
+    out.error = std::max(out.error, out.moved);
     return out;
 }
 

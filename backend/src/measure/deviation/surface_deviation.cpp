@@ -360,7 +360,7 @@ SurfaceDeviation DeviationReference::compare(const SeenSamples& seen, const Stan
     const Against to_finest{scenes_, *seen.looks, scenes_,    palette_,
                             none,    mesh,        skin.get(), nullptr};
     const SurfaceDeviation back = measure(samples, to_finest, {}, there.error, useless, job);
-    return {std::max(there.error, back.error), std::max(there.max, back.max)};
+    return {std::max(there.error, back.error), std::max(there.max, back.max), there.moved};
 }
 
 }  // namespace lodestone::measure

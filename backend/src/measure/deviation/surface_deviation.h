@@ -25,7 +25,8 @@ class VisibleLooks;
 struct SurfaceDeviation {
     /// Metres: the largest quantile of places (99.9 %), both ways, and of moves of every look.
     double error = 0;
-    double max = 0;  // metres: the largest distance that was seen
+    double max = 0;    // metres: the largest distance that was seen
+    double moved = 0;  // metres: of the error, what is moves of looks
 };
 
 /// The numbers of samples of a comparison.

@@ -96,6 +96,40 @@ bool shows_corner(const Mesh& mesh, const ray::MeshScene& scene, uint32_t triang
     return scene.shows(triangle, weight(t.y), weight(t.z));
 }
 
+/// Adds points uniform in area, one in each of `count` equal steps along a list of triangles.
+template <typename TriangleAt>
+void add_samples_of(const Mesh& mesh, const ray::MeshScene& scene, size_t triangles,
+                    const TriangleAt& triangle_at, uint32_t count, uint64_t seed,
+                    std::vector<SurfaceSample>& out) {
+    double all = 0;
+    for (size_t i = 0; i < triangles; ++i)
+        all += area_of(mesh, triangle_at(i));
+    if (!(all > 0) || count == 0)
+        return;
+    PcgRandom random(scramble(seed), 2);
+    const double step = all / count;
+    uint32_t taken = 0;
+    double up_to = 0;
+    double next = random.uniform() * step;
+    for (size_t i = 0; i < triangles && taken < count; ++i) {
+        const size_t triangle = triangle_at(i);
+        up_to += area_of(mesh, triangle);
+        while (next < up_to && taken < count) {
+            const Triangle& t = mesh.triangles[triangle];
+            const glm::dvec3 a(mesh.positions[t.x]);
+            const double u = random.uniform();
+            const double v = random.uniform();
+            const glm::dvec2 weights = uniform_in_triangle(u, v);
+            if (scene.shows(static_cast<uint32_t>(triangle), weights.x, weights.y))
+                out.push_back({a + weights.x * (glm::dvec3(mesh.positions[t.y]) - a) +
+                                   weights.y * (glm::dvec3(mesh.positions[t.z]) - a),
+                               step});
+            ++taken;
+            next = (taken + random.uniform()) * step;
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, uint64_t seed) {
@@ -132,32 +166,16 @@ std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, u
 
 void add_area_samples(const Mesh& mesh, const ray::MeshScene& scene, uint32_t count, uint64_t seed,
                       std::vector<SurfaceSample>& out) {
-    double all = 0;
-    for (size_t i = 0; i < mesh.triangles.size(); ++i)
-        all += area_of(mesh, i);
-    if (!(all > 0) || count == 0)
-        return;
-    PcgRandom random(scramble(seed), 2);
-    const double step = all / count;
-    uint32_t taken = 0;
-    double up_to = 0;
-    double next = random.uniform() * step;
-    for (size_t i = 0; i < mesh.triangles.size() && taken < count; ++i) {
-        up_to += area_of(mesh, i);
-        while (next < up_to && taken < count) {
-            const Triangle& t = mesh.triangles[i];
-            const glm::dvec3 a(mesh.positions[t.x]);
-            const double u = random.uniform();
-            const double v = random.uniform();
-            const glm::dvec2 weights = uniform_in_triangle(u, v);
-            if (scene.shows(static_cast<uint32_t>(i), weights.x, weights.y))
-                out.push_back({a + weights.x * (glm::dvec3(mesh.positions[t.y]) - a) +
-                                   weights.y * (glm::dvec3(mesh.positions[t.z]) - a),
-                               step});
-            ++taken;
-            next = (taken + random.uniform()) * step;
-        }
-    }
+    add_samples_of(
+        mesh, scene, mesh.triangles.size(), [](size_t i) { return i; }, count, seed, out);
+}
+
+void add_area_samples(const Mesh& mesh, const ray::MeshScene& scene,
+                      std::span<const uint32_t> triangles, uint32_t count, uint64_t seed,
+                      std::vector<SurfaceSample>& out) {
+    add_samples_of(
+        mesh, scene, triangles.size(), [&](size_t i) { return size_t{triangles[i]}; }, count, seed,
+        out);
 }
 
 void add_box_samples(const Primitive& box, std::vector<SurfaceSample>& out) {

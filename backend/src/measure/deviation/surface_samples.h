@@ -52,6 +52,10 @@ std::vector<WeightedVertex> weighted_vertices(const Mesh& mesh, uint32_t most, u
 /// only their places count. No point is added where the scene shows nothing.
 void add_area_samples(const Mesh& mesh, const ray::MeshScene& scene, uint32_t count, uint64_t seed,
                       std::vector<SurfaceSample>& out);
+/// The same along some of the mesh's triangles.
+void add_area_samples(const Mesh& mesh, const ray::MeshScene& scene,
+                      std::span<const uint32_t> triangles, uint32_t count, uint64_t seed,
+                      std::vector<SurfaceSample>& out);
 
 /// Adds 25 points of each side of a box, its middle among them; each has its share of the side's
 /// area in m^2. A few points all over would miss the ends of a long one.

@@ -82,7 +82,7 @@ ShadedPatches::ShadedPatches(const Mesh& finest, const VisibleSampler& sampler,
             const VisiblePoint& at = found.points[static_cast<size_t>(k)];
             const glm::dvec3 towards = sampler.towards_eye(static_cast<uint32_t>(i), at);
             const ray::RayHit hit{true, at.triangle, at.u, at.v, 0, at.point};
-            seen_.push_back({0, at.point, towards, normal_at(finest, hit, towards)});
+            seen_.push_back({0, at.triangle, at.point, towards, normal_at(finest, hit, towards)});
             low = glm::min(low, at.point);
         }
     }
@@ -94,56 +94,43 @@ ShadedPatches::ShadedPatches(const Mesh& finest, const VisibleSampler& sampler,
     is_surface_ = likeness(normals) > kLeastAlike;
 }
 
-double ShadedPatches::largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
-                                           double least) const {
-    // The samples of a patch of the least size, in the mean, on a ball.
-    // Taste: more tell smaller differences, for a ray each.
-    constexpr double kSamplesEach = 6;
+void ShadedPatches::meet(const ShadedSample& seen, const Mesh& stand_in,
+                         const ray::MeshScene& scene, double near,
+                         std::vector<MetSample>& out) const {
+    const ray::RayHit hit = scene.first_hit(seen.point + 4 * radius_ * seen.towards, -seen.towards);
+    if (!hit.hit || glm::distance(hit.point, seen.point) > near)
+        return;
+    const glm::dvec3 normal = normal_at(stand_in, hit, seen.towards);
+    out.push_back(
+        {PatchGrid::on_side(normal, seen.cube), seen.point, normal, seen.normal - normal});
+}
+
+double ShadedPatches::largest_of(std::vector<MetSample>& met, size_t samples, double widest,
+                                 double least) const {
     // The share of a patch's square that counts as all of it: surfaces cut cubes anyhow.
     // Taste: a larger value forgives how thin things are shaded, and what ends in a cube.
     constexpr double kLeastCovered = 0.25;
     // Chance makes patches differ by more than the least with one in 40.
     // Law: two standard deviations.
     constexpr double kSure = 2;
-    if (!is_surface_ || !(2 * radius_ > least) || !(least > 0) || !(visible_area_ > 0))
-        return 0;
-    const double width = 2 * radius_ / least;
-    const double wanted = kSamplesEach * std::numbers::pi * width * width;
-    const size_t most =
-        wanted < static_cast<double>(seen_.size())
-            ? std::min(seen_.size(), std::max(kFewest / 2, static_cast<size_t>(wanted)))
-            : seen_.size();
-    const ray::FlushDenormals burst;
-    struct SeenPatch {
-        uint64_t patch;
-        glm::dvec3 normal;  // of the stand-in
-        glm::dvec3 off;
-    };
-    std::vector<SeenPatch> found;
-    for (const ShadedSample& seen : std::span(seen_).first(most)) {
-        const ray::RayHit hit =
-            scene.first_hit(seen.point + 4 * radius_ * seen.towards, -seen.towards);
-        if (!hit.hit || glm::distance(hit.point, seen.point) > least)
-            continue;
-        const glm::dvec3 normal = normal_at(stand_in, hit, seen.towards);
-        found.push_back({PatchGrid::on_side(normal, seen.cube), normal, seen.normal - normal});
-    }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const SeenPatch& a, const SeenPatch& b) { return a.patch < b.patch; });
+    std::stable_sort(met.begin(), met.end(),
+                     [](const MetSample& a, const MetSample& b) { return a.patch < b.patch; });
     std::vector<uint64_t> patches;
     std::vector<glm::dvec3> normals;
     std::vector<glm::dvec3> off;
-    for (const SeenPatch& one : found) {
+    for (const MetSample& one : met) {
         patches.push_back(one.patch);
         normals.push_back(one.normal);
         off.push_back(one.off);
     }
-    const double per_area = kLeastCovered * static_cast<double>(most) / visible_area_;
+    const double per_area = kLeastCovered * static_cast<double>(samples) / visible_area_;
     // Between two sizes differences follow a power of the size, nearly.
     double side = 2 * radius_;
     double larger = 0;
     for (int halvings = 0; halvings <= PatchGrid::kHalvings && side > least;
          ++halvings, side /= 2) {
+        if (side > widest)
+            continue;
         const PatchGrid::PatchDifference turned =
             PatchGrid::difference(patches, off, halvings, side * side * per_area, normals);
         if (turned.known < kLeastKnown)
@@ -158,6 +145,53 @@ double ShadedPatches::largest_unlike_patch(const Mesh& stand_in, const ray::Mesh
         larger = sure;
     }
     return 0;
+}
+
+double ShadedPatches::largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
+                                           double least) const {
+    // The samples of a patch of the least size, in the mean, on a ball.
+    // Taste: more tell smaller differences, for a ray each.
+    constexpr double kSamplesEach = 6;
+    if (!is_surface_ || !(2 * radius_ > least) || !(least > 0) || !(visible_area_ > 0))
+        return 0;
+    const double width = 2 * radius_ / least;
+    const double wanted = kSamplesEach * std::numbers::pi * width * width;
+    const size_t most =
+        wanted < static_cast<double>(seen_.size())
+            ? std::min(seen_.size(), std::max(kFewest / 2, static_cast<size_t>(wanted)))
+            : seen_.size();
+    const ray::FlushDenormals burst;
+    std::vector<MetSample> met;
+    for (const ShadedSample& seen : std::span(seen_).first(most))
+        meet(seen, stand_in, scene, least, met);
+    return largest_of(met, most, 2 * radius_, least);
+}
+
+std::vector<double> ShadedPatches::largest_unlike_patches(
+    const Mesh& stand_in, const ray::MeshScene& scene,
+    const std::function<uint32_t(uint32_t triangle)>& part_of,
+    std::span<const double> least) const {
+    std::vector<double> out(least.size(), 0);
+    if (!is_surface_ || !(visible_area_ > 0))
+        return out;
+    std::vector<std::vector<MetSample>> met(out.size());
+    const ray::FlushDenormals burst;
+    for (const ShadedSample& seen : seen_) {
+        const uint32_t part = part_of(seen.triangle);
+        meet(seen, stand_in, scene, least[part], met[part]);
+    }
+    for (size_t part = 0; part < out.size(); ++part) {
+        glm::dvec3 low(std::numeric_limits<double>::infinity());
+        glm::dvec3 high(-low);
+        for (const MetSample& one : met[part]) {
+            low = glm::min(low, one.point);
+            high = glm::max(high, one.point);
+        }
+        const glm::dvec3 size = high - low;
+        out[part] =
+            largest_of(met[part], seen_.size(), std::max({size.x, size.y, size.z}), least[part]);
+    }
+    return out;
 }
 
 }  // namespace lodestone::measure

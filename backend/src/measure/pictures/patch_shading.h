@@ -4,6 +4,7 @@
 
 #include "measure/visible/visible_sampler.h"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -36,13 +37,36 @@ public:
     double largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
                                 double least) const;
 
+    /// The same for each part of the finest, up to the part's width. `part_of` tells the part of a
+    /// triangle of the finest, `least` is each part's. Samples lie as densely as in the whole, and
+    /// resolve no smaller patches.
+    std::vector<double> largest_unlike_patches(
+        const Mesh& stand_in, const ray::MeshScene& scene,
+        const std::function<uint32_t(uint32_t triangle)>& part_of,
+        std::span<const double> least) const;
+
 private:
+    /// A place of a stand-in that a sample's ray meets.
+    struct MetSample {
+        uint64_t patch;
+        glm::dvec3 point;   // of the finest
+        glm::dvec3 normal;  // of the stand-in
+        glm::dvec3 off;
+    };
     struct ShadedSample {
         uint64_t cube;  // of PatchGrid
+        uint32_t triangle;
         glm::dvec3 point;
         glm::dvec3 towards;  // unit direction to the eye
         glm::dvec3 normal;   // unit, on the eye's side
     };
+    /// Adds what the sample meets, unless that is farther off than `near`.
+    void meet(const ShadedSample& seen, const Mesh& stand_in, const ray::MeshScene& scene,
+              double near, std::vector<MetSample>& out) const;
+    /// The side of the largest of such patches that are not shaded alike; `samples` were asked.
+    double largest_of(std::vector<MetSample>& met, size_t samples, double widest,
+                      double least) const;
+
     std::vector<ShadedSample> seen_;  // in the order they were cast
     double radius_ = 0;               // metres: the radius of the bound
     double visible_area_ = 0;         // m^2

@@ -99,6 +99,29 @@ TEST_F(ShadedPatches, SmallWavesOfAFineMeshAreResolved) {
     EXPECT_LT(found, 0.3);
 }
 
+TEST_F(ShadedPatches, EachPartHasThePatchesThatAreInIt) {
+    const Mesh finest = sheet([](double x) {
+        return x < 2 ? 0.05 * std::sin(2 * std::numbers::pi * x) : 0;  // waves of a metre
+    });
+    const Mesh plain = waves(1, 0);
+    const ray::MeshScene scene(finest);
+    const measure::VisibleSampler sampler(finest, scene, kSeed);
+    const measure::ShadedPatches patches(finest, sampler, {}, surface_area(finest));
+    const auto part_of = [&](uint32_t triangle) {
+        return finest.positions[finest.triangles[triangle].x].x < 2 ? 0u : 1u;
+    };
+    const std::vector<double> least{0.06, 0.06, 0.06};
+    const std::vector<double> found =
+        patches.largest_unlike_patches(plain, ray::MeshScene(plain), part_of, least);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_GE(found[0], 0.25);
+    EXPECT_LE(found[0], 2);
+    EXPECT_EQ(found[1], 0);
+    EXPECT_EQ(found[2], 0) << "nothing is in it";
+    EXPECT_EQ(patches.largest_unlike_patches(finest, scene, part_of, least),
+              std::vector<double>(3, 0));
+}
+
 TEST_F(ShadedPatches, AThinThingCountsByWhatItCovers) {
     // A post of a hundredth of its patches' width, shaded otherwise.
     Mesh post = shapes::box({0, 0, 0}, {0.04, 0.04, 4});
