@@ -85,6 +85,7 @@ private:
                        std::vector<double>& errors) const {
         const SurfaceLevel& level = *candidate.surface;
         std::vector<double> least;
+        least.reserve(errors.size());
         for (const double error : errors)
             least.push_back(error / kShading);
         const std::vector<double> unlike = finest_.shading->largest_unlike_patches(
