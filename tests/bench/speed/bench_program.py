@@ -39,7 +39,7 @@ def options_of(arguments: list[str] | None = None) -> argparse.Namespace:
     parser.add_argument("program", choices=TITLES)
     parser.add_argument("words", nargs="*", help="for the program")
     benching.add_write(parser, "backend")
-    return parser.parse_args(arguments)
+    return parser.parse_intermixed_args(arguments)
 
 
 def textured_models() -> list[str]:

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "hierarchy/proposers/collapse_levels.h"
 
+#include "hierarchy/proposers/surface_chunks.h"
+
 #include <algorithm>
+#include <cmath>
 
 namespace lodestone::hierarchy {
 namespace {
@@ -27,7 +30,10 @@ std::vector<size_t> targets_of(size_t triangles, size_t first, double ratio) {
 std::vector<size_t> targets_of(const Mesh& mesh, const BuildSettings& settings) {
     const size_t count = mesh.triangles.size();
     const auto first = static_cast<size_t>(static_cast<double>(count) * settings.level_ratio);
-    return targets_of(count, first, settings.level_ratio);
+    // Each chunk of a large surface takes the level that it needs, so that steps half as large pay.
+    const double ratio =
+        is_large_surface(mesh) ? std::sqrt(settings.level_ratio) : settings.level_ratio;
+    return targets_of(count, first, ratio);
 }
 
 std::vector<Material> materials_of(const Model& model, const Representation& finest) {
