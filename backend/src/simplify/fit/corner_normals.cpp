@@ -26,8 +26,8 @@ constexpr size_t kSamplesToShade = 4;
 constexpr float kLeastOff = 0.001f;
 // Taste: a larger part shades more triangles anew for little, and makes facets of what curves.
 constexpr float kLeft = 0.25f;
-/// What is not rough is flat where this share of a triangle's area differs (by the square) by no
-/// more than that from one normal; the rest is a rim.
+/// The share of a triangle's area that must differ, by its square, by no more than kFlat from one
+/// normal where the mesh is not rough; the rest is a rim.
 /// Taste: a smaller share makes plates of what curves, a larger one blends rims over flat sides.
 constexpr float kFlatShare = 0.5f;
 // Taste: 0.001 is 1.8 degrees, which an eye sees on a flat face.
@@ -35,7 +35,7 @@ constexpr float kFlat = 0.001f;
 // The same for the first guess, a mean that rims are in.
 // Taste: 0.03 is 10 degrees.
 constexpr float kNearFlat = 0.03f;
-/// The same difference where the mesh is rough: it has so many triangles that nobody sees single
+/// As kLeastOff, where the mesh is rough: it has so many triangles that nobody sees single
 /// ones, and its wedges are off by so much in the mean. What is smooth keeps its wedges: with
 /// normals of its own each triangle would be a facet.
 /// Taste: 0.01 is 6 degrees, which nobody sees among others.
