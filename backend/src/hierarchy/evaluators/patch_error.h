@@ -12,7 +12,7 @@ namespace lodestone::hierarchy {
 /// Taste: a larger value keeps finer levels where colors differ.
 inline constexpr double kPatches = 0.5;
 /// The share of the size of patches that are shaded otherwise which is their error: patches of three
-/// pixels are to be shaded alike, so that fine terrain keeps its relief (SSIM .95 at 1 px).
+/// pixels are to be shaded alike, so that fine terrain keeps its relief (SSIM 0.95 at 1 px).
 /// Fitted: by tests/bench/sheets/bench_shading.py; a larger value keeps finer levels.
 inline constexpr double kShading = 0.36;
 

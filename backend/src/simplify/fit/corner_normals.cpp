@@ -35,7 +35,7 @@ constexpr float kFlat = 0.001f;
 // The same for the first guess, a mean that rims are in.
 // Taste: 0.03 is 10 degrees.
 constexpr float kNearFlat = 0.03f;
-/// As kLeastOff, where the mesh is rough: it has so many triangles that nobody sees single
+/// The same as kLeastOff where the mesh is rough: it has so many triangles that nobody sees single
 /// ones, and its wedges are off by so much in the mean. What is smooth keeps its wedges: with
 /// normals of its own each triangle would be a facet.
 /// Taste: 0.01 is 6 degrees, which nobody sees among others.
