@@ -124,5 +124,7 @@ TEST(SimplifyTextures, CoordinatesWithoutMeaningDoNoHarm) {
         EXPECT_LE(level.triangles.size(), 200u);
         for (const glm::vec3& p : level.positions)
             EXPECT_TRUE(std::isfinite(p.x + p.y + p.z));
+        for (const glm::vec2& uv : level.uvs)
+            EXPECT_TRUE(std::isfinite(uv.x) && std::isfinite(uv.y));
     }
 }

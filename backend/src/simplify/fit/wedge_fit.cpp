@@ -158,7 +158,7 @@ void fit_wedge_uvs(FitPlaces& places, const FitSamples& samples) {
                                       places.original(t.z) - place);
         const glm::vec2 uv =
             at.x * source.uvs[t.x] + at.y * source.uvs[t.y] + at.z * source.uvs[t.z];
-        if (!(glm::length(uv - carried) <= kSameIsland * longest))
+        if (!std::isfinite(longest) || !(glm::length(uv - carried) <= kSameIsland * longest))
             continue;
         shown.push_back({{wedges.x, wedges.y, wedges.z},
                          {sample.weights[0], sample.weights[1], sample.weights[2]},
