@@ -750,8 +750,9 @@ LDS_API lds_status lds_model_simplify(lds_model* model, const lds_simplify_optio
 
 typedef struct lds_build_options {
     uint32_t struct_size;
-    double level_ratio; /* triangles of a level over those of the next finer one; usual 0.4. Larger:
-                           more levels, a closer fit to every distance, more time and disk */
+    double level_ratio; /* triangles of a level over those of the next finer one; usual 0.4. Below
+                           the first level of a large surface its root. Larger: more levels, a
+                           closer fit to every distance, more time and disk */
     uint64_t rays;      /* rays that measure an object; usual 4096 */
     uint32_t samples;   /* points that measure an error, in each direction; usual 2048 */
     uint64_t group_triangles; /* most triangles of a group's finest stand-in; usual 40000 */

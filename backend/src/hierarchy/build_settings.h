@@ -26,8 +26,8 @@ struct BuildDemand {
 };
 
 struct BuildSettings {
-    /// Triangles of a level over those of the next finer one. Larger: a closer fit to every
-    /// distance, more time and disk.
+    /// Triangles of a level over those of the next finer one; its root below the first level of a
+    /// large surface. Larger: a closer fit to every distance, more time and disk.
     double level_ratio = 0.4;
     /// Rays to measure an object's attributes.
     uint64_t rays = 4096;

@@ -9,7 +9,7 @@
     /usr/bin/python3 tests/bench/speed/bench_program.py group [--write] [-- --flat 1000 STORE ...]
 
 Builds the program in build/release first; its source (bench_builds.cpp, bench_cut.cpp,
-bench_crowds.cpp, bench_group.cpp, bench_surfaces.cpp, peers/bench_textures.cpp) tells what it
+bench_crowds.cpp, bench_group.cpp, bench_surfaces.cpp, errors/bench_textures.cpp) tells what it
 measures and what the words after -- are; bench_textures takes the textured models of
 $LODESTONE_DATA (default ../shared/data) where none are given. No number makes it fail.
 """

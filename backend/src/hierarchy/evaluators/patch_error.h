@@ -20,9 +20,9 @@ inline constexpr double kShading = 0.36;
 bool shows_as_much(const Mesh& level, const MeasuredFinest& finest, const Job& job);
 
 /// Looks at a candidate that is Unproven. False for a mesh that shows another amount of surface.
-/// Otherwise the error becomes at least half as large as the patches that do not look like the
-/// finest's, a third as large as those of an object's mesh that are shaded otherwise, and what
-/// is seen of it from the worst side (view_error.h). `used_to`: the error from which on another is
+/// Otherwise the error becomes at least kPatches of the size of patches that do not look like the
+/// finest's, kShading of that of patches of an object's mesh that are shaded otherwise, and what is
+/// seen of it from the worst side (view_error.h). `used_to`: the error from which on another is
 /// used.
 bool prove(StandInCandidate& candidate, const MeasuredFinest& finest, double used_to,
            const Job& job);

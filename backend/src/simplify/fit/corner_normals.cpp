@@ -94,6 +94,19 @@ private:
     size_t count_ = 0;
 };
 
+/// The linear function nearest to the normals on a triangle; false when few tell it.
+bool linear_normals(const FitSamples& samples, std::span<const PlacedSample> on, const Mesh& source,
+                    glm::vec3* corners) {
+    TriangleShading shading;
+    for (const PlacedSample& placed : on) {
+        const FitSample& sample = samples[placed.index];
+        const glm::vec3 normal = normal_at(source, sample);
+        if (shaded(normal))
+            shading.add(sample, normal);
+    }
+    return shading.count() >= kSamplesToShade && shading.solve(corners);
+}
+
 /// The mean square difference between the normals of samples and those blended from the corners'.
 float off_by(const glm::vec3* corners, const FitSamples& samples, std::span<const PlacedSample> on,
              const Mesh& source) {
@@ -156,16 +169,9 @@ bool shade_anew(const FitSamples& samples, std::span<const PlacedSample> on, con
                 bool rough, float before, glm::vec3* corners) {
     if (on.size() < kSamplesToShade || !(before > (rough ? kLeastRough : kLeastOff)))
         return false;
-    TriangleShading shading;
-    for (const PlacedSample& placed : on) {
-        const FitSample& sample = samples[placed.index];
-        const glm::vec3 normal = normal_at(source, sample);
-        if (shaded(normal))
-            shading.add(sample, normal);
-    }
     glm::vec3 found[3];
-    if (shading.count() < kSamplesToShade ||
-        !(rough ? shading.solve(found) : flat_normal(samples, on, source, found)) ||
+    if (!(rough ? linear_normals(samples, on, source, found)
+                : flat_normal(samples, on, source, found)) ||
         !(off_by(found, samples, on, source) < kLeft * before))
         return false;
     std::copy(found, found + 3, corners);

@@ -49,6 +49,13 @@ protected:
                  const hierarchy::MeasuredFinest& finest) const {
         hierarchy::measure_chunks(levels, original_.get(), finest, {});
     }
+    /// The same with the errors of their chunks.
+    std::vector<hierarchy::StandInCandidate> measured_levels(
+        const hierarchy::MeasuredFinest& finest, size_t chunk) {
+        std::vector<hierarchy::StandInCandidate> levels = levels_of(finest, chunk);
+        measure(levels, finest);
+        return levels;
+    }
     static double largest(const SurfaceLevel& level) {
         return *std::max_element(level.errors.begin(), level.errors.end());
     }
@@ -79,8 +86,7 @@ TEST_F(ChunkErrors, WhatHasNoChunksHasNone) {
 TEST_F(ChunkErrors, NoChunkIsMuchFartherOffThanItSays) {
     const Mesh mesh = half_plain(129);
     const hierarchy::MeasuredFinest finest = measured(mesh);
-    std::vector<hierarchy::StandInCandidate> levels = levels_of(finest, 1024);
-    measure(levels, finest);
+    const std::vector<hierarchy::StandInCandidate> levels = measured_levels(finest, 1024);
     size_t looked_at = 0;
     for (const hierarchy::StandInCandidate& level : levels) {
         if (level.surface->errors.empty())
@@ -98,8 +104,7 @@ TEST_F(ChunkErrors, NoChunkIsMuchFartherOffThanItSays) {
 TEST_F(ChunkErrors, AFlatFieldDoesNotPayForTheRoughestCliff) {
     const Mesh mesh = half_plain(129);
     const hierarchy::MeasuredFinest finest = measured(mesh);
-    std::vector<hierarchy::StandInCandidate> levels = levels_of(finest, 1024);
-    measure(levels, finest);
+    const std::vector<hierarchy::StandInCandidate> levels = measured_levels(finest, 1024);
     const SurfaceLevel& level = *levels[0].surface;
     ASSERT_EQ(level.errors.size(), level.nodes());
     size_t flat = 0;
@@ -115,8 +120,7 @@ TEST_F(ChunkErrors, AFlatFieldDoesNotPayForTheRoughestCliff) {
 TEST_F(ChunkErrors, CoarserChunksAreNoNearer) {
     const Mesh mesh = half_plain(129);
     const hierarchy::MeasuredFinest finest = measured(mesh);
-    std::vector<hierarchy::StandInCandidate> levels = levels_of(finest, 512);
-    measure(levels, finest);
+    const std::vector<hierarchy::StandInCandidate> levels = measured_levels(finest, 512);
     size_t compared = 0;
     for (size_t i = 0; i + 1 < levels.size() && !levels[i + 1].surface->errors.empty(); ++i) {
         const SurfaceLevel& finer = *levels[i].surface;
