@@ -114,16 +114,18 @@ Model city(const CityKind& kind) {
     return model;
 }
 
-/// A camera whose picture shows the model so many pixels wide, from 27 degrees above.
+/// An orthographic camera, as the pictures', that shows the model so many pixels wide, from 27
+/// degrees above.
 View view_of(const Bound& bound, double pixels) {
-    View view = models::view_from(0, 1);
-    const double pixel = 2 * bound.radius / pixels;
-    const double away = pixel / choose::pixel_size(view, 1) + bound.radius;
     const glm::dvec3 towards = glm::normalize(glm::dvec3(0.5, -1, 0.56));
-    view.camera.position = bound.center + away * towards;
-    view.camera.direction = -towards;
-    view.camera.right = glm::normalize(glm::cross(view.camera.direction, glm::dvec3(0, 0, 1)));
-    view.camera.up = 0.5625 * glm::cross(view.camera.right, view.camera.direction);
+    View view;
+    Camera& camera = view.camera;
+    camera.orthographic = true;
+    camera.position = bound.center + 3 * bound.radius * towards;
+    camera.direction = -towards;
+    camera.right = 2 * bound.radius * glm::normalize(glm::cross(-towards, glm::dvec3(0, 0, 1)));
+    camera.up = glm::cross(camera.right, -towards);
+    view.width = view.height = static_cast<int>(pixels);
     return view;
 }
 
@@ -139,7 +141,7 @@ size_t covered_pixels(const Model& model, double pixels) {
     const ray::MeshScene scene(boxes);
     const auto side = static_cast<int>(pixels);
     const double pixel = 2 * bound.radius / pixels;
-    const glm::dvec3 right = view.camera.right;
+    const glm::dvec3 right = glm::normalize(view.camera.right);
     const glm::dvec3 up = glm::normalize(view.camera.up);
     size_t covered = 0;
     for (int row = 0; row < side; ++row) {
