@@ -30,7 +30,8 @@ Model read_glb(std::string_view bytes, const std::filesystem::path& folder, cons
 std::string write_glb(const Model& model);
 
 /// One mesh, for a store; valid glTF for everybody else. Pictures are named as the store's files,
-/// "../i/<16 hex>.png"; what glTF cannot say of a texture counts as its mean.
+/// "../i/<16 hex>.png"; what glTF cannot say of a texture counts as its mean, and what is to be
+/// brighter than its picture is as bright as that.
 std::string write_glb_mesh(const Mesh& mesh, std::span<const Material> materials_by_slot,
                            const std::string& name);
 

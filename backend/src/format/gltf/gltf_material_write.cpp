@@ -73,16 +73,19 @@ MaterialWriter::TextureLayer MaterialWriter::base_layer(const Material& material
     out.factor = {limited(material.base_color, 0, 1), limited(material.alpha, 0, 1)};
     if (!color && !alpha)
         return out;
-    bool direct = color && color.channel == TextureChannel::Color && within_one(color.scale) &&
+    // What is brighter than its picture is said by a drawn one, or where none is drawn, nearly.
+    const auto said = [&](const Texture& texture) { return !embed_ || within_one(texture.scale); };
+    bool direct = color && color.channel == TextureChannel::Color && said(color) &&
                   sayable(color, ColorSpace::Srgb);
     if (direct && alpha)
-        direct = alpha.channel == TextureChannel::Alpha && within_one(alpha.scale) &&
-                 alpha.offset.x == 0 && same_layout(color, alpha) && same_bytes(color, alpha);
+        direct = alpha.channel == TextureChannel::Alpha && said(alpha) && alpha.offset.x == 0 &&
+                 same_layout(color, alpha) && same_bytes(color, alpha);
     else if (direct)
         direct = opaque || color.picture->mean.w == 1;
     if (direct) {
         out.texture = color;
-        out.factor = {color.scale, alpha ? alpha.scale.x : out.factor.w};
+        out.factor = {limited(color.scale, 0, 1),
+                      alpha ? limited(alpha.scale.x, 0, 1) : out.factor.w};
         return out;
     }
     Recipe recipe{};

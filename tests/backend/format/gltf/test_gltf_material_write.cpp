@@ -166,6 +166,21 @@ TEST(GltfMaterialWritten, StrangersSeeTheSameSurface) {
     }
 }
 
+TEST(GltfMaterialWritten, LevelsMadeBrighterHadNoPictureForStrangers) {
+    Material m;
+    m.base_color_texture.picture = many_texels(4, 4, ColorSpace::Srgb);
+    const Mesh mesh = model_of(m).objects[0].representations[0].mesh();
+    const auto written = [&](const glm::dvec3& scale) {
+        m.base_color_texture.scale = scale;
+        return write_glb_mesh(mesh, std::vector<Material>{m}, "level");
+    };
+    for (const glm::dvec3& scale : {glm::dvec3(0.5, 0.25, 1), glm::dvec3(0.5, 0.25, 1.25)}) {
+        const std::string glb = written(scale);
+        EXPECT_NE(glb.find("\"baseColorTexture\""), std::string::npos) << scale.z;
+        EXPECT_NE(glb.find("\"baseColorFactor\":[0.5,0.25,1.0,1.0]"), std::string::npos) << scale.z;
+    }
+}
+
 TEST(GltfMaterialWritten, StrangersSeeTheHolesOfOtherPictures) {
     Material m;
     m.base_color_texture.picture = many_texels(4, 4, ColorSpace::Srgb);
