@@ -26,6 +26,10 @@ constexpr size_t kSamplesToShade = 4;
 constexpr float kLeastOff = 0.001f;
 // Taste: a larger part shades more triangles anew for little, and makes facets of what curves.
 constexpr float kLeft = 0.25f;
+// The same where the mesh is rough: there a triangle's own normals carry relief, which wedges blend
+// away.
+// Taste: a smaller part leaves triangles to their wedges for a tenth of what is off.
+constexpr float kLeftRough = 0.9f;
 /// The share of a triangle's area that must differ, by its square, by no more than kFlat from one
 /// normal where the mesh is not rough; the rest is a rim.
 /// Taste: a smaller share makes plates of what curves, a larger one blends rims over flat sides.
@@ -46,8 +50,8 @@ constexpr double kRough = 0.02;
 // Taste: fewer are facets of a smooth thing that is seen near enough.
 constexpr size_t kManyTriangles = 2000;
 /// The cosine of corners at one vertex that share a normal.
-/// Taste: 0.98 is 11 degrees; a larger cosine keeps more creases and more normals.
-constexpr float kAlike = 0.98f;
+/// Taste: 0.995 is 6 degrees; a larger cosine keeps more relief and more normals.
+constexpr float kAlike = 0.995f;
 // Triangles that one thread computes at a time.
 // Taste: larger chunks share the work less evenly.
 constexpr size_t kTrianglesAtOnce = 2048;
@@ -172,7 +176,7 @@ bool shade_anew(const FitSamples& samples, std::span<const PlacedSample> on, con
     glm::vec3 found[3];
     if (!(rough ? linear_normals(samples, on, source, found)
                 : flat_normal(samples, on, source, found)) ||
-        !(off_by(found, samples, on, source) < kLeft * before))
+        !(off_by(found, samples, on, source) < (rough ? kLeftRough : kLeft) * before))
         return false;
     std::copy(found, found + 3, corners);
     return true;
