@@ -71,7 +71,7 @@ TEST(SurfaceDetail, NearChunksAreFineAndFarOnesCoarse) {
     EXPECT_EQ(cut.triangles, model.objects[0].representations[0].summary.cost.triangles);
     const auto details = choose::surface_details(model, view, cut);
     ASSERT_EQ(details.size(), 1u);
-    EXPECT_LT(details[0].triangles, cut.triangles / 3);
+    EXPECT_LT(details[0].triangles, cut.triangles / 2);
     EXPECT_LE(details[0].largest_error_px, 2.0);
     const std::set<uint32_t> lods(details[0].lods.begin(), details[0].lods.end());
     EXPECT_GE(lods.size(), 3u);

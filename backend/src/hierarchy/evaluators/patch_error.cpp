@@ -58,10 +58,11 @@ bool prove(StandInCandidate& candidate, const MeasuredFinest& finest, double use
     measure_to_the_end(candidate, finest, job);
     count_views(candidate, mesh, scene, finest, job);
     const double child_error = finest.options.child_error;
-    if (is_mesh && finest.shading) {
+    if (finest.shading) {
         const double least = (candidate.error - child_error) / kShading;
-        raise_to(candidate,
-                 kShading * finest.shading->largest_unlike_patch(mesh, scene, least) + child_error);
+        const double shaded = kShading * finest.shading->largest_unlike_patch(mesh, scene, least);
+        // Nothing that is a pixel wide shows its relief.
+        raise_to(candidate, std::min(shaded, 2 * finest.size) + child_error);
     }
     if (!finest.patches)
         return true;

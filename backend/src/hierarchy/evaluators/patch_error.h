@@ -21,7 +21,7 @@ bool shows_as_much(const Mesh& level, const MeasuredFinest& finest, const Job& j
 
 /// Looks at a candidate that is Unproven. False for a mesh that shows another amount of surface.
 /// Otherwise the error becomes at least kPatches of the size of patches that do not look like the
-/// finest's, kShading of that of patches of an object's mesh that are shaded otherwise, and what is
+/// finest's, kShading of that of patches of an object that are shaded otherwise, and what is
 /// seen of it from the worst side (view_error.h). `used_to`: the error from which on another is
 /// used.
 bool prove(StandInCandidate& candidate, const MeasuredFinest& finest, double used_to,

@@ -21,7 +21,7 @@ namespace {
 constexpr size_t kFewest = 2048;
 // The samples kept at most.
 // Taste: more resolve smaller patches of fine meshes, for a ray each and stand-in.
-constexpr size_t kMost = 32768;
+constexpr size_t kMost = 131072;
 // The share of the samples that must not be alone in their patch.
 // Taste: a larger value ends the search at larger patches, a smaller one trusts few rays.
 constexpr double kLeastKnown = 0.5;
@@ -110,6 +110,9 @@ double ShadedPatches::largest_of(std::vector<MetSample>& met, size_t samples, do
     // The share of a patch's square that counts as all of it: surfaces cut cubes anyhow.
     // Taste: a larger value forgives how thin things are shaded, and what ends in a cube.
     constexpr double kLeastCovered = 0.25;
+    // The largest of smaller patches may count as so many times their size.
+    // Taste: nothing is turned by more than 0.5 in the mean; a smaller number looks at fewer sizes.
+    constexpr double kMostTimes = 8;
     // Chance makes patches differ by more than the least with one in 40.
     // Law: two standard deviations.
     constexpr double kSure = 2;
@@ -127,7 +130,8 @@ double ShadedPatches::largest_of(std::vector<MetSample>& met, size_t samples, do
     // Between two sizes differences follow a power of the size, nearly.
     double side = 2 * radius_;
     double larger = 0;
-    for (int halvings = 0; halvings <= PatchGrid::kHalvings && side > least;
+    double largest = 0;
+    for (int halvings = 0; halvings <= PatchGrid::kHalvings && kMostTimes * side > least;
          ++halvings, side /= 2) {
         if (side > widest)
             continue;
@@ -140,11 +144,13 @@ double ShadedPatches::largest_of(std::vector<MetSample>& met, size_t samples, do
         if (sure > kMostTurned) {
             const double part =
                 larger > 0 ? std::log(sure / kMostTurned) / std::log(sure / larger) : 0;
-            return side * std::exp2(part);
+            if (largest == 0)
+                largest = side * std::exp2(part);
+            largest = std::max(largest, side * sure / kMostTurned);
         }
         larger = sure;
     }
-    return 0;
+    return largest > least ? largest : 0;
 }
 
 double ShadedPatches::largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,

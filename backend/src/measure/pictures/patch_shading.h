@@ -29,11 +29,13 @@ public:
     ShadedPatches(const Mesh& finest, const VisibleSampler& sampler,
                   std::span<const CastPoints> cast, double visible_area);
 
-    /// The side in metres of the largest patches that are not shaded alike, at most the width of
-    /// the bound; 0 where only patches of `least` metres or less are not, or what is seen lies
-    /// farther off than that. Thin things count by how much of a patch they cover. 0 of foliage,
-    /// too, where neighbors face anywhere: it has no surface to be shaded. `scene` has `stand_in`.
-    /// May be called from any thread.
+    /// The side in metres of the largest patches that are not shaded alike; smaller ones that are
+    /// turned more than that count as larger in proportion, for their relief (side times turn) is
+    /// off by as much: a box has the mean normals of a ball on each side, and none of its own. 0
+    /// where that is `least` metres or less, or what is seen lies farther off than that. Thin
+    /// things count by how much of a patch they cover. 0 of foliage, too, where neighbors face
+    /// anywhere: it has no surface to be shaded. `scene` has `stand_in`. May be called from any
+    /// thread.
     double largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
                                 double least) const;
 

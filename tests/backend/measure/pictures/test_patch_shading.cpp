@@ -85,6 +85,16 @@ TEST_F(ShadedPatches, ASlopeThatIsGoneIsUnlikeAsAWhole) {
     EXPECT_GE(unlike(roof(0.4), roof(0), 0.5), 1);
 }
 
+TEST_F(ShadedPatches, ABoxIsNotShadedLikeABall) {
+    // Far stones became boxes: the mean normals of a box's sides are those of a ball's.
+    Mesh ball = shapes::sphere(1, 4);
+    ball.normals = ball.positions;
+    const Mesh box = shapes::box({-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8});
+    const Mesh coarse = shapes::sphere(1, 1);
+    EXPECT_GT(unlike(ball, box, 0.5), 2);  // the width of the bound
+    EXPECT_LT(unlike(ball, coarse, 0.5), 0.6 * unlike(ball, box, 0.5));
+}
+
 TEST_F(ShadedPatches, WhatLiesFartherOffIsNotCompared) {
     Mesh below = waves(1, 0);
     for (glm::vec3& position : below.positions)
