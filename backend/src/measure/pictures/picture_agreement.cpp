@@ -20,8 +20,9 @@ namespace lodestone::measure {
 namespace {
 
 // The sides of pixels in samples that are tried, where they divide the side of the picture.
-// Law: the divisors of kSide (90), kCoarseSide (45), kBrightSide (30) and kFewSide (18) above 1.
-constexpr std::array<int, 11> kPixelSides{2, 3, 5, 6, 9, 10, 15, 18, 30, 45, 90};
+// Law: the divisors of kFineSide (180), of which all other sides are some, above 1.
+constexpr std::array<int, 17> kPixelSides{2,  3,  4,  5,  6,  9,  10, 12, 15,
+                                          18, 20, 30, 36, 45, 60, 90, 180};
 // The share of the sky in the light on a surface that faces the sun. Nothing shades the sky:
 // pictures show it so, as one ambient light.
 // Taste: as on a clear day; a larger value tells less of the shape. At 0.35 and 0.5 trees came out
@@ -34,37 +35,31 @@ constexpr double kMostMisses = 2;
 // Taste: a larger value wastes more samples around the object.
 constexpr double kMargin = 1.1;
 
-/// One of each opposite pair of 26, in turns.
-std::vector<glm::dvec3> directions() {
-    std::vector<glm::dvec3> out = cube_directions();
-    out.resize(out.size() / 2);
-    for (size_t i = 1; i < out.size(); i += 2)
-        out[i] = -1.0 * out[i];
-    return out;
-}
-
-/// The frame of a picture. Its columns: right, up, towards the viewer.
+/// A view of a picture.
 struct PictureView {
-    glm::dmat3 frame{1.0};
+    glm::dmat3 frame{1.0};  // columns: right, up, towards the viewer
     glm::dvec3 sun{0.0};
 
-    PictureView(const glm::dvec3& towards, size_t number) {
+    PictureView(const glm::dvec3& towards, size_t number, PictureViews views) {
         frame = picture_frame(towards);
         // The suns stand around the views by the golden angle: each view has its own.
         const double turn = kGoldenAngle * static_cast<double>(number);
         sun = glm::normalize(towards + std::cos(turn) * frame[0] + std::sin(turn) * frame[1]);
+        if (views == PictureViews::OfCrowns)
+            sun.z = std::abs(sun.z);
     }
 };
 
-/// The place of a sample in its cell. Points of a sequence that fills space evenly would lie in one
-/// half of all cells of even columns and in the other half of the odd ones, and miss what lies
-/// between.
-std::array<double, 2> jitter(uint64_t seed, uint64_t number) {
-    // Law: 2^-32, which maps 32 bits to [0, 1).
-    constexpr double kUnit = 1.0 / 4294967296.0;
-    const uint64_t bits = scramble(scramble(seed) + number);
-    return {kUnit * static_cast<double>(bits >> 32u),
-            kUnit * static_cast<double>(bits & 0xffffffffu)};
+/// Along one of each opposite pair of 26 directions: in turns, or of crowns the upper ones.
+std::vector<PictureView> views_of(PictureViews views) {
+    std::vector<glm::dvec3> directions = cube_directions();
+    directions.resize(directions.size() / 2);
+    std::vector<PictureView> out;
+    for (size_t i = 0; i < directions.size(); ++i) {
+        const bool opposite = views == PictureViews::OfCrowns ? directions[i].z < 0 : i % 2 == 1;
+        out.emplace_back(opposite ? -directions[i] : directions[i], i, views);
+    }
+    return out;
 }
 
 /// The rectangle around all that a mesh has in a view, in half sides of the picture from its
@@ -117,8 +112,8 @@ AgreementReference::AgreementReference(const Mesh& finest, const ray::SkinPtr& s
 
 AgreementReference::AgreementReference(const Mesh& finest, const ray::MeshScene& scene,
                                        const ray::SkinPtr& skin, uint64_t seed, int side,
-                                       const Job& job)
-    : side_(side) {
+                                       const Job& job, PictureViews views)
+    : side_(side), views_(views) {
     Box3 box;
     for (const Triangle& t : finest.triangles) {
         for (int corner = 0; corner < 3; ++corner) {
@@ -160,20 +155,20 @@ AgreementReference::TracedPictures AgreementReference::trace(const Mesh& mesh,
     out.samples_.resize(kViews * row * row);
     if (mesh.empty() || !(radius_ > 0))
         return out;
-    const std::vector<glm::dvec3> views = directions();
+    const std::vector<PictureView> views = views_of(views_);
     const double lift = ray_lift(radius_);
     const GlassRays glass(mesh, skin, scene, lift);
     // On most things nine of ten rays would miss: things are long and narrow, and their bound is
     // round.
     std::vector<std::optional<ViewExtent>> frames(kViews);
     parallel_for(kViews, [&](size_t number) {
-        frames[number].emplace(mesh, PictureView(views[number], number), center_, radius_);
+        frames[number].emplace(mesh, views[number], center_, radius_);
     });
     parallel_for(kViews * row, [&](size_t line) {
         job.check();
         const ray::FlushDenormals burst;
         ray::RecentBlockers blockers;
-        const PictureView view(views[line / row], line / row);
+        const PictureView& view = views[line / row];
         const ViewExtent& frame = *frames[line / row];
         for (size_t column = 0; column < row; ++column) {
             const size_t number = line * row + column;
@@ -318,6 +313,24 @@ std::vector<glm::dvec4> AgreementReference::side_colors(const TracedPictures& st
     return out;
 }
 
+double AgreementReference::least_error() const {
+    return kPixelSides.front() * 2 * radius_ / side_;
+}
+
+double AgreementReference::misses_of(const Pictures& other, const std::vector<PictureRect>& parts,
+                                     int pixel) const {
+    const PixelMisses in_pixels = pixel_misses(finest_, other, parts, side_, pixel);
+    if (views_ != PictureViews::OfCrowns)
+        return in_pixels.worst();
+    int area = pixel;  // the largest of kPixelSides within
+    for (const int side : kPixelSides) {
+        if (side_ % side == 0 && side <= kCrownPixels * pixel)
+            area = std::max(area, side);
+    }
+    return std::max(in_pixels.coverage_off(),
+                    pixel_misses(finest_, other, parts, side_, area).light_off());
+}
+
 AgreementReference::AgreementSize AgreementReference::agreement_size(const Pictures& other) const {
     const double sample = 2 * radius_ / side_;
     const std::vector<PictureRect> parts = picture_rects(finest_, other, kViews, side_);
@@ -331,7 +344,7 @@ AgreementReference::AgreementSize AgreementReference::agreement_size(const Pictu
         const int pixel = kPixelSides[i];
         if (side_ % pixel != 0)
             continue;
-        const double misses = pixel_misses(finest_, other, parts, side_, pixel).worst();
+        const double misses = misses_of(other, parts, pixel);
         if (misses > 1) {
             if (last > 0) {
                 const double part =

@@ -7,6 +7,7 @@
 #include "ray/mesh_scene.h"
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -21,12 +22,28 @@ inline constexpr double kMostCoverageOff = 0.10;
 /// Taste: a larger value lets stand-ins be darker, brighter or smoother for less cost.
 inline constexpr double kMostLightOff = 0.20;
 
+/// Where pictures are taken from, and over which areas their light is compared.
+enum class PictureViews : uint8_t {
+    /// Along all axes, half of them from below; light counts in pixels.
+    AllAround,
+    /// For crowns, which stand on something: from above the horizon, under suns above it (from below
+    /// they cover the same). Which leaves of a crown are lit is chance, pixel by pixel: light
+    /// counts over areas of kCrownPixels by kCrownPixels pixels, coverage in pixels.
+    OfCrowns,
+};
+
+/// The side in pixels of the areas over which light counts in crowns.
+/// Taste: a larger value lets the light of crowns be patchier.
+inline constexpr int kCrownPixels = 4;
+
 /// The answer of a comparison of pictures.
 struct PictureAgreement {
     double error = 0;       // metres: the smallest pixel size at which pictures agree
     double coverage = 0;    // the covered area of the stand-in over that of the finest
     glm::dvec3 light{0.0};  // by color: the finest's mean light where covered over the stand-in's
 };
+
+struct PictureRect;  // picture_misses.h
 
 /// The error of what is not solid: foliage, fences, crowds, things one can see through. If single
 /// leaves are missing, the distance to the nearest other leaf tells nothing; how much of a pixel is
@@ -43,6 +60,9 @@ public:
     /// wide.
     /// Taste: a larger value resolves smaller errors, for time that grows with its square.
     static constexpr int kSide = 90;
+    /// Samples along a side for what agrees at the smallest pixel of kSide, and is drawn often.
+    /// Taste: twice kSide, four times slower.
+    static constexpr int kFineSide = 180;
     /// Samples along a side for objects whose levels are coarse anyway.
     /// Taste: half of kSide, four times faster; a smaller value cannot tell errors below a
     /// twentieth of the size.
@@ -55,18 +75,23 @@ public:
     /// knows no pixels of a sixteenth of the size.
     static constexpr int kFewSide = 18;
 
-    /// Keeps the pictures alone. `side` is one of the four numbers above. Throws Error:
+    /// Keeps the pictures alone. `side` is one of the five numbers above. Throws Error:
     /// InvalidArgument, RaysUnavailable, Cancelled.
     AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
                        int side = kSide, const Job& job = {});
     /// Takes a scene that was made from this mesh and this skin before.
     AgreementReference(const Mesh& finest, const ray::MeshScene& scene, const ray::SkinPtr& skin,
-                       uint64_t seed, int side, const Job& job);
+                       uint64_t seed, int side, const Job& job,
+                       PictureViews views = PictureViews::AllAround);
 
     /// The agreement of a stand-in with the finest. The bits are the same on any number of threads.
     /// Two meshes that show nothing agree at every size. If the pictures agree at no size, the
     /// error is one to two sides of the picture, the more they differ.
     PictureAgreement of(const Mesh& stand_in, const ray::SkinPtr& skin, const Job& job = {}) const;
+
+    /// The smallest pixel size at which pictures are compared, in metres: no agreement has less
+    /// error. 0 where the finest shows nothing.
+    double least_error() const;
 
     /// The point of a stand-in that each sample of the pictures shows, and how much light falls on
     /// it. Tracing takes most of the time, and the result is the same for all skins with the same
@@ -115,10 +140,13 @@ private:
         bool smallest = true;  // true: they agree at the smallest size
     };
     AgreementSize agreement_size(const Pictures& other) const;
+    /// How far pictures of that pixel differ over what is allowed: above 1 they do not agree.
+    double misses_of(const Pictures& other, const std::vector<PictureRect>& parts, int pixel) const;
 
     glm::dvec3 center_{0.0};
     double radius_ = 0;
     int side_;
+    PictureViews views_;
     /// The place of each sample in its picture, in half sides from the middle.
     std::vector<glm::dvec2> places_;
     Pictures finest_;

@@ -39,15 +39,19 @@ struct PixelMisses {
     PixelDifference light;    // three colors a pixel
     double finest_light = 0;  // sum of the finest's light over covered pixels
 
-    /// The larger of both differences, over what is allowed: above 1 the pictures do not agree.
-    double worst() const {
-        if (covered == 0)
-            return 0;
-        const auto count = static_cast<double>(covered);
-        const double bright = finest_light / (3 * count);
-        return std::max(coverage.mean(count) / kMostCoverageOff,
-                        bright > 0 ? light.mean(3 * count) / bright / kMostLightOff : 0);
+    /// The difference of coverage over what is allowed: above 1 the pictures do not agree.
+    double coverage_off() const {
+        return covered == 0 ? 0 : coverage.mean(static_cast<double>(covered)) / kMostCoverageOff;
     }
+    /// The same of light.
+    double light_off() const {
+        if (covered == 0 || !(finest_light > 0))
+            return 0;
+        const double count = 3 * static_cast<double>(covered);
+        return light.mean(count) * count / finest_light / kMostLightOff;
+    }
+    /// The larger of both.
+    double worst() const { return std::max(coverage_off(), light_off()); }
 };
 
 /// The part of a picture where either shows something: from `low` to below `high` (column, row).

@@ -20,6 +20,17 @@ constexpr uint64_t scramble(uint64_t x) {
     return x ^ (x >> 32u);
 }
 
+/// The place of a sample in its cell, each coordinate in [0, 1). Points of a sequence that fills
+/// space evenly would lie in one half of all cells of even columns and in the other half of the odd
+/// ones, and miss what lies between.
+inline std::array<double, 2> jitter(uint64_t seed, uint64_t number) {
+    // Law: 2^-32, which maps 32 bits to [0, 1).
+    constexpr double kUnit = 1.0 / 4294967296.0;
+    const uint64_t bits = scramble(scramble(seed) + number);
+    return {kUnit * static_cast<double>(bits >> 32u),
+            kUnit * static_cast<double>(bits & 0xffffffffu)};
+}
+
 using SobolDirections = std::array<std::array<uint32_t, 4>, 32>;
 
 /// Direction numbers: the plain radical inverse, then the primitive polynomials 1 + x,

@@ -217,3 +217,61 @@ TEST_F(Agreements, NothingSendsNoLightToSides) {
     const AgreementReference reference(cube, plain(0.5), 1, AgreementReference::kCoarseSide);
     EXPECT_TRUE(reference.side_colors(reference.trace({}, plain(0.5)), {}, 0).empty());
 }
+
+TEST_F(Agreements, LightOfCrownsCountsOverFourPixels) {
+    // Checkered in black and white, and gray of the same mean: alike where a pixel has both.
+    const auto checkered = [](int squares) {
+        Material material;
+        const PicturePtr picture = foliage::picture(256, [squares](double x, double y) {
+            const int at = static_cast<int>(x * squares) + static_cast<int>(y * squares);
+            return glm::dvec4(glm::dvec3(at % 2 == 0 ? 1.0 : 0.0), 1);
+        });
+        material.base_color = glm::dvec3(picture->mean);
+        material.base_color_texture = foliage::texture(picture);
+        return skin({material});
+    };
+    const Mesh mesh = foliage::card(2, 2);
+    const ray::SkinPtr squares = checkered(8);
+    const ray::MeshScene scene(mesh, squares);
+    const AgreementReference plainly(mesh, scene, squares, 1, AgreementReference::kSide, {});
+    const AgreementReference crown(mesh, scene, squares, 1, AgreementReference::kSide, {},
+                                   measure::PictureViews::OfCrowns);
+    const double error = plainly.of(mesh, plain(0.5)).error;
+    EXPECT_GT(error, 0.25) << "squares are as large";
+    EXPECT_LT(crown.of(mesh, plain(0.5)).error, 0.7 * error);
+    // Coverage counts in pixels for both: half of the card is no card.
+    Mesh half = foliage::card(1, 2);
+    EXPECT_GT(crown.of(half, squares).error, 0.7 * plainly.of(half, squares).error);
+}
+
+TEST_F(Agreements, TwiceTheSamplesTellHalfTheError) {
+    const Mesh mesh = foliage::card(2, 2);
+    EXPECT_EQ(AgreementReference(Mesh{}, plain(0.5), 1).least_error(), 0);
+    const AgreementReference few(mesh, plain(0.5), 1);
+    const AgreementReference many(mesh, plain(0.5), 1, AgreementReference::kFineSide);
+    EXPECT_DOUBLE_EQ(many.least_error(), 0.5 * few.least_error());
+    EXPECT_DOUBLE_EQ(few.of(mesh, plain(0.5)).error, few.least_error());
+    EXPECT_DOUBLE_EQ(many.of(mesh, plain(0.5)).error, many.least_error());
+    EXPECT_GT(many.of(mesh, plain(0.1)).error, 2) << "another color at any size";
+}
+
+TEST_F(Agreements, CrownsAreSeenFromAboveTheHorizon) {
+    // A level sheet whose underside nobody above sees: two sheets, the lower one of another color.
+    Mesh both = shapes::quad(2, 2);
+    Mesh lower = shapes::quad(2, 2);
+    for (glm::vec3& position : lower.positions)
+        position.z -= 0.01f;
+    append(both, lower, {}, 1);
+    Material dark;
+    dark.base_color = glm::dvec3(0.1);
+    Material bright;
+    bright.base_color = glm::dvec3(0.8);
+    const ray::SkinPtr one = skin({bright, bright});
+    const ray::SkinPtr two = skin({bright, dark});
+    const ray::MeshScene scene(both, one);
+    const AgreementReference plainly(both, scene, one, 1, AgreementReference::kSide, {});
+    const AgreementReference crown(both, scene, one, 1, AgreementReference::kSide, {},
+                                   measure::PictureViews::OfCrowns);
+    EXPECT_GT(plainly.of(both, two).light.x, 1.1);
+    EXPECT_NEAR(crown.of(both, two).light.x, 1, 0.02);
+}
