@@ -17,6 +17,7 @@ FLOORS = (
     "simplify",
     "deform",
     "solids",
+    "cards",
     "prune",
     "group",
     "choose",
