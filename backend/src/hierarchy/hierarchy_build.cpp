@@ -117,6 +117,8 @@ public:
         for (const ObjectIndex index : plan.not_followed)
             problems_.push_back(
                 {model_.objects[index].name, Severity::Info, "not_followed", kNotFollowed});
+        if (!plan.tasks.empty())
+            store_.load_pictures(model_);  // those of cards, which groups above are flattened with
         wanted_ = std::move(plan.wanted);
 
         std::vector<BuildTask>& tasks = plan.tasks;

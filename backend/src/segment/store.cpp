@@ -251,6 +251,14 @@ bool Store::has_stand_ins(const Object& object) const {
                        });
 }
 
+bool Store::has_pictures(const Material& material) const {
+    bool out = true;
+    for_each_texture(material, [&](const Texture& texture) {
+        out = out && has_content(folder_ / file_of(*texture.picture));
+    });
+    return out;
+}
+
 void Store::load(Representation& representation) const {
     if (!representation.resident())
         representation.payload = load_mesh(representation.summary.hash);

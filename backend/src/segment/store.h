@@ -56,6 +56,9 @@ public:
     /// Whether it has one for every mesh of an object but the finest, which the caller has.
     bool has_stand_ins(const Object& object) const;
 
+    /// Whether load_pictures() has a file of each picture that a material shows.
+    bool has_pictures(const Material& material) const;
+
     /// Makes the mesh of a representation resident.
     void load(Representation& representation) const;
 

@@ -129,6 +129,51 @@ TEST_F(Foliage, TreeOfManyLeavesIsPrunedNearByAndAFewSolidsFarAway) {
     EXPECT_TRUE(composed);
 }
 
+TEST_F(Foliage, CardsKeepTheirPictureInTheStoreAndInTheNextBuild) {
+    const auto new_model = [](float apart = 30) {
+        Model model;
+        model.costs = povray::povray_costs();
+        const ObjectIndex tree = add_tree(model, 400, 24);
+        model.root = models::add_group(
+            model, "wood",
+            {{tree, models::moved(0, 0, 0), "one"}, {tree, models::moved(apart, 0, 0), "other"}});
+        summarize_assemblies(model, bottom_up(model));
+        return model;
+    };
+    Model model = new_model();
+    build_in(model, "cards");
+    const auto cards_of = [](const Model& built) {
+        const Material* found = nullptr;
+        for (const Representation& level : built.objects[0].representations) {
+            for (const uint32_t index : level.materials) {
+                if (built.materials[index].name == "cards")
+                    found = &built.materials[index];
+            }
+        }
+        return found;
+    };
+    const Material* cards = cards_of(model);
+    ASSERT_NE(cards, nullptr) << "a tree of masks has cards";
+    const Hash picture = cards->base_color_texture.picture->hash;
+    // The next build takes them from the store, with the picture that groups are flattened with.
+    Problems problems;
+    const segment::Store store(own_scratch() / "cards");
+    Model again = new_model(40);
+    const hierarchy::BuildReport report =
+        hierarchy::build_hierarchy(again, store, {}, problems, {});
+    EXPECT_EQ(report.built, 1u) << "the wood alone is another one";
+    cards = cards_of(again);
+    ASSERT_NE(cards, nullptr);
+    EXPECT_EQ(cards->base_color_texture.picture->hash, picture);
+    EXPECT_FALSE(cards->base_color_texture.picture->bytes.empty());
+    // A picture that is gone is made again.
+    std::filesystem::remove_all(store.folder() / "i");
+    Model third = new_model();
+    EXPECT_GT(hierarchy::build_hierarchy(third, store, {}, problems, {}).built, 0u);
+    EXPECT_NE(cards_of(third), nullptr);
+    EXPECT_TRUE(problems.empty());
+}
+
 TEST_F(Foliage, WoodHasAStandInThatOneCanSeeThrough) {
     Model model;
     model.costs = povray::povray_costs();

@@ -11,6 +11,42 @@
 #include <numeric>
 
 namespace lodestone::hierarchy {
+namespace {
+
+void compare_to(const measure::AgreementReference& reference, StandInCandidate& candidate,
+                std::span<const uint16_t> tinted, const MeasuredFinest& finest, const Job& job) {
+    // The relative difference of light that counts as none.
+    // Taste: nobody sees this much; a larger value leaves visible differences.
+    constexpr double kAlikeBright = 0.02;
+    // Some of a mesh's light comes from other slots, so that one round is not enough.
+    // Taste: more rounds come nearer, for a shading of the pictures each.
+    constexpr int kRounds = 2;
+    std::vector<uint16_t> all(candidate.materials.size());
+    std::iota(all.begin(), all.end(), uint16_t{0});
+    ray::SkinPtr current = finest.skin_of(candidate.materials);
+    Mesh solid;
+    const auto traced = reference.trace(traced_mesh(candidate, solid), current, job);
+    const auto match = [&](std::span<const uint16_t> slots, int rounds) {
+        for (int round = 0; round < rounds && !slots.empty(); ++round) {
+            const glm::dvec3 light = reference.brightness_of(traced, current).light;
+            const glm::dvec3 off = glm::abs(light - 1.0);
+            if (std::max({off.x, off.y, off.z}) <= kAlikeBright)
+                break;
+            // Light that is scattered once is in proportion to the color.
+            for (const uint16_t slot : slots) {
+                if (slot < all.size())
+                    solids::brighten(candidate.materials[slot], light);
+            }
+            current = finest.skin_of(candidate.materials);
+        }
+    };
+    match(tinted, kRounds);
+    match(all, 1);  // what these cannot make up for, as of a house of many boards
+    candidate.error = finest.error_at(reference.of(traced, current).error);
+    candidate.max_error = candidate.error;
+}
+
+}  // namespace
 
 const measure::AgreementReference& FinestPictures::take(const Mesh& seen, int side,
                                                         const Job& job) {
@@ -22,6 +58,21 @@ const measure::AgreementReference& FinestPictures::take(const Mesh& seen, int si
             pictures_.emplace(seen, finest_->skin, finest_->options.seed, side, job);
     }
     return *pictures_;
+}
+
+const measure::AgreementReference& FinestPictures::of_crown(const Job& job) {
+    using Pictures = measure::AgreementReference;
+    if (!crown_)
+        crown_.emplace(finest_->mesh, finest_->scene(), finest_->skin, finest_->options.seed,
+                       Pictures::kSide, job, measure::PictureViews::OfCrowns);
+    return *crown_;
+}
+
+const measure::AgreementReference& FinestPictures::take_fine(const Job& job) {
+    if (!fine_)
+        fine_.emplace(finest_->mesh, finest_->scene(), finest_->skin, finest_->options.seed,
+                      measure::AgreementReference::kFineSide, job);
+    return *fine_;
 }
 
 const measure::AgreementReference& FinestPictures::take_few(const Job& job) {
@@ -56,37 +107,25 @@ glm::dvec3 light_over_emitted(const measure::AgreementReference& pictures,
 void compare_pictures(StandInCandidate& candidate, std::span<const uint16_t> tinted,
                       const MeasuredFinest& finest, const FinestPictures& pictures,
                       const Job& job) {
-    // The relative difference of light that counts as none.
-    // Taste: nobody sees this much; a larger value leaves visible differences.
-    constexpr double kAlikeBright = 0.02;
-    // Some of a mesh's light comes from other slots, so that one round is not enough.
-    // Taste: more rounds come nearer, for a shading of the pictures each.
-    constexpr int kRounds = 2;
-    const measure::AgreementReference& reference = pictures.taken();
-    std::vector<uint16_t> all(candidate.materials.size());
-    std::iota(all.begin(), all.end(), uint16_t{0});
-    ray::SkinPtr current = finest.skin_of(candidate.materials);
-    Mesh solid;
-    const auto traced = reference.trace(traced_mesh(candidate, solid), current, job);
-    const auto match = [&](std::span<const uint16_t> slots, int rounds) {
-        for (int round = 0; round < rounds && !slots.empty(); ++round) {
-            const glm::dvec3 light = reference.brightness_of(traced, current).light;
-            const glm::dvec3 off = glm::abs(light - 1.0);
-            if (std::max({off.x, off.y, off.z}) <= kAlikeBright)
-                break;
-            // Light that is scattered once is in proportion to the color.
-            for (const uint16_t slot : slots) {
-                if (slot < all.size())
-                    solids::brighten(candidate.materials[slot], light);
-            }
-            current = finest.skin_of(candidate.materials);
-        }
-    };
-    match(tinted, kRounds);
-    match(all, 1);  // what these cannot make up for, as of a house of many boards
-    candidate.error = finest.error_at(reference.of(traced, current).error);
-    candidate.max_error = candidate.error;
+    compare_to(pictures.taken(), candidate, tinted, finest, job);
     come_to(candidate, CandidateState::Pictured);
+}
+
+bool agrees_everywhere(const StandInCandidate& candidate, const MeasuredFinest& finest,
+                       const FinestPictures& pictures) {
+    return candidate.error <= finest.error_at(pictures.taken().least_error());
+}
+
+void compare_finely(StandInCandidate& candidate, std::span<const uint16_t> tinted,
+                    const MeasuredFinest& finest, FinestPictures& pictures, const Job& job) {
+    compare_to(pictures.take_fine(job), candidate, tinted, finest, job);
+}
+
+void compare_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
+                    FinestPictures& pictures, const Job& job) {
+    compare_to(pictures.of_crown(job), candidate, {}, finest, job);
+    come_to(candidate, CandidateState::Pictured);
+    candidate.viewed = true;
 }
 
 bool looks_alike(const Mesh& drawn, std::span<const Material> materials, double error,

@@ -24,8 +24,12 @@ public:
 
     /// `seen`: the finest, or what of it can be seen. `side`: one of AgreementReference's.
     const measure::AgreementReference& take(const Mesh& seen, int side, const Job& job);
+    /// Many samples of all of the finest, for levels that come close to it.
+    const measure::AgreementReference& take_fine(const Job& job);
     /// Few samples of all of the finest, for what is 16 pixels large or less where it is used.
     const measure::AgreementReference& take_few(const Job& job);
+    /// Those of a crown (PictureViews::OfCrowns), taken when they are asked for first.
+    const measure::AgreementReference& of_crown(const Job& job);
     /// Those that are there. Throws Error: Internal, where take() was never called.
     const measure::AgreementReference& taken() const;
 
@@ -35,7 +39,9 @@ public:
 private:
     const MeasuredFinest* finest_;
     std::optional<measure::AgreementReference> pictures_;
+    std::optional<measure::AgreementReference> fine_;
     std::optional<measure::AgreementReference> few_;
+    std::optional<measure::AgreementReference> crown_;
     std::optional<glm::dvec3> glow_;
 };
 
@@ -48,6 +54,18 @@ glm::dvec3 light_over_emitted(const measure::AgreementReference& pictures,
 /// as bright as the finest by its colors, first by those of the slots `tinted`: Pictured.
 void compare_pictures(StandInCandidate& candidate, std::span<const uint16_t> tinted,
                       const MeasuredFinest& finest, const FinestPictures& pictures, const Job& job);
+
+/// Whether it agreed at the smallest pixel of these pictures: it may be nearer than they can tell.
+bool agrees_everywhere(const StandInCandidate& candidate, const MeasuredFinest& finest,
+                       const FinestPictures& pictures);
+
+/// Fills the errors of such a one again, by more samples.
+void compare_finely(StandInCandidate& candidate, std::span<const uint16_t> tinted,
+                    const MeasuredFinest& finest, FinestPictures& pictures, const Job& job);
+
+/// The same by pictures of a crown: of cards, whose points lie anywhere behind what they show.
+void compare_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
+                    FinestPictures& pictures, const Job& job);
 
 /// Whether what is drawn of a group's children is about as bright as the finest, and looks like it
 /// in pictures of pixels of that error.

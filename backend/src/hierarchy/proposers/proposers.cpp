@@ -3,6 +3,7 @@
 
 #include "hierarchy/proposers/composite_solids.h"
 #include "hierarchy/proposers/environment_stand_ins.h"
+#include "hierarchy/proposers/masked_cards.h"
 #include "hierarchy/proposers/measured_levels.h"
 #include "hierarchy/proposers/painted_boxes.h"
 #include "hierarchy/proposers/primitive_solids.h"
@@ -13,11 +14,12 @@ namespace lodestone::hierarchy {
 namespace {
 
 // Each sees what those above it found out: a level is measured only where it may be nearer than the
-// solids above it, parts are pruned where levels cost too much, composites are made where nothing
-// above them is as good.
+// solids above it, parts are pruned where levels cost too much and until cards are nearer,
+// composites are made where nothing above them is as good.
 constexpr StandInProposer kProposers[] = {
     {"near solids", ProposalStage::All, propose_near_solids},
     {"collapse", ProposalStage::All, propose_levels},
+    {"cards", ProposalStage::All, propose_cards},
     {"prune", ProposalStage::All, propose_pruned_levels},
     {"painted boxes", ProposalStage::All, propose_painted_boxes},
     {"solids", ProposalStage::All, propose_primitives},

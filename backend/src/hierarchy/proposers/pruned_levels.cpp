@@ -218,21 +218,34 @@ private:
     std::vector<double> visible_;  // by kind, of the whole crowd
 };
 
-/// None of more than about so many triangles.
+/// The error from which on a pruned level is no use: any solid will do, or cards.
+double error_of_enough(const std::vector<StandInCandidate>& candidates, const Mesh& mesh) {
+    double out = bound_of(mesh.positions).radius;
+    for (const StandInCandidate& candidate : candidates) {
+        if (candidate.state == CandidateState::Pictured)
+            out = std::min(out, candidate.error);
+    }
+    return out;
+}
+
+/// None of more than about so many triangles. Those of a `crown`, a single thing of leaf cards, are
+/// twice as many, and compared finely: half of the leaves often look like all of them.
 void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& mesh,
-                       const Crowd& crowd, double level_ratio, size_t most,
-                       const MeasuredFinest& finest, const FinestPictures& pictures,
-                       const Job& job) {
+                       const Crowd& crowd, bool crown, double level_ratio, size_t most,
+                       const MeasuredFinest& finest, FinestPictures& pictures, const Job& job) {
     const CrowdPruner thinner(mesh, crowd, finest, job);
-    const std::vector<PruningStep> steps =
-        steps_of(crowd, thinner.rest().triangles.size(), level_ratio);
+    const std::vector<PruningStep> steps = steps_of(crowd, thinner.rest().triangles.size(),
+                                                    crown ? std::sqrt(level_ratio) : level_ratio);
     const std::vector<Mesh> rests = rests_of(thinner.rest(), steps, job);
     const std::vector<uint16_t> own = thinner.own_slots();
-    const Bound bound = bound_of(mesh.positions);
+    const double far = error_of_enough(candidates, mesh);
     std::vector<prune::PruneOrder> orders{prune::PruneOrder::Random};
     if (crowd.sizes_differ())
         orders.push_back(prune::PruneOrder::Largest);
+    bool alike = false;  // of a crown that was thinned at random
     for (const prune::PruneOrder kind : orders) {
+        if (alike)
+            break;  // the largest leaves are no nearer: they lie closer together
         const std::vector<uint32_t> order = prune::prune_order(crowd, kind, finest.options.seed);
         for (size_t i = 0; i < steps.size(); ++i) {
             job.check();
@@ -242,7 +255,11 @@ void add_pruned_levels(std::vector<StandInCandidate>& candidates, const Mesh& me
             if (candidate.mesh().triangles.size() >= mesh.triangles.size())
                 continue;
             compare_pictures(candidate, own, finest, pictures, job);
-            const bool enough = candidate.error >= bound.radius;  // any solid will do
+            if (crown && agrees_everywhere(candidate, finest, pictures)) {
+                compare_finely(candidate, own, finest, pictures, job);
+                alike = true;
+            }
+            const bool enough = candidate.error >= far;
             candidates.push_back(std::move(candidate));
             if (enough)
                 break;
@@ -263,9 +280,10 @@ void propose_pruned_levels(ProposalRound& round) {
         return;
     round.by_pictures = true;
     round.pictures.take(round.limits.mesh, measure::AgreementReference::kSide, round.job);
-    add_pruned_levels(round.candidates, round.limits.mesh, round.crowd, round.limits.level_ratio,
-                      triangles_for(whole.most, whole.uses, whole.costs), round.finest,
-                      round.pictures, round.job);
+    const bool crown = !round.finest.options.group && round.finest.scene().see_through();
+    add_pruned_levels(round.candidates, round.limits.mesh, round.crowd, crown,
+                      round.limits.level_ratio, triangles_for(whole.most, whole.uses, whole.costs),
+                      round.finest, round.pictures, round.job);
 }
 
 }  // namespace lodestone::hierarchy

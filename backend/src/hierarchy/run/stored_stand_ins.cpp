@@ -5,6 +5,20 @@
 #include <utility>
 
 namespace lodestone::hierarchy {
+namespace {
+
+/// Whether the pictures of all its stand-ins are there. `shown`: by material, whether its are.
+bool shows(const Object& object, const std::vector<uint8_t>& shown) {
+    for (size_t lod = 1; lod < object.representations.size(); ++lod) {
+        for (const uint32_t material : object.representations[lod].materials) {
+            if (shown.at(material) == 0)
+                return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
 
 StoredStandIns::StoredStandIns(const segment::Store& store, bool ignore)
     : store_(store), ignore_(ignore || !store.exists()) {
@@ -19,8 +33,11 @@ StoredStandIns::StoredStandIns(const segment::Store& store, bool ignore)
 
 void StoredStandIns::list(const std::shared_ptr<const Model>& model) const {
     models_.push_back(model);
+    std::vector<uint8_t> shown;
+    for (const Material& material : model->materials)
+        shown.push_back(store_.has_pictures(material) ? 1 : 0);
     for (const Object& object : model->objects) {
-        if (object.build_hash != 0 && store_.has_stand_ins(object))
+        if (object.build_hash != 0 && store_.has_stand_ins(object) && shows(object, shown))
             by_hash_.emplace(object.build_hash, StoredObject{model.get(), &object});
     }
 }

@@ -137,12 +137,93 @@ TEST_F(StandInProposers, ATreeIsPrunedAndComparedByPictures) {
     EXPECT_NO_THROW(static_cast<void>(pictures_->taken()));
 }
 
+TEST_F(StandInProposers, ACrownHasTwiceAsManyPrunedLevelsAsAGroupAndIsToldFinely) {
+    const std::vector<Material> leafy{models::colored("bark", {0.2, 0.1, 0.05}),
+                                      foliage::leaf(foliage::left_half())};
+    hierarchy::FinestOptions options;
+    options.group = true;
+    const auto of_group = walk(foliage::tree(1500), leafy, options)["prune"];
+    ASSERT_FALSE(of_group.empty());
+    for (const StandInCandidate& level : of_group)
+        EXPECT_GE(level.error, pictures_->taken().least_error());
+    const auto of_crown = walk(foliage::tree(1500), leafy)["prune"];
+    ASSERT_GE(of_crown.size(), 2u);
+    const auto triangles = [](const StandInCandidate& level) {
+        return static_cast<double>(level.mesh().triangles.size());
+    };
+    EXPECT_LT(triangles(of_group[0]) / triangles(of_crown[0]), 0.7);
+    EXPECT_NEAR(triangles(of_crown[1]) / triangles(of_crown[0]), std::sqrt(settings_.level_ratio),
+                0.05);
+    EXPECT_LT(of_crown[0].error, pictures_->taken().least_error())
+        << "so many leaves hide each other that two of three look like all";
+}
+
+TEST_F(StandInProposers, PrunedLevelsEndWhereCardsAreNearer) {
+    const PicturePtr leaf = foliage::picture(16, [](double x, double y) {
+        return glm::dvec4(0.1, 0.5, 0.1, std::hypot(x - 0.5, y - 0.5) < 0.4 ? 1 : 0);
+    });
+    auto made =
+        walk(foliage::tree(400), {models::colored("bark", {0.2, 0.1, 0.05}), foliage::leaf(leaf)});
+    ASSERT_EQ(made["cards"].size(), 1u);
+    ASSERT_FALSE(made["prune"].empty());
+    for (size_t i = 0; i + 1 < made["prune"].size(); ++i)
+        EXPECT_LT(made["prune"][i].error, made["cards"][0].error);
+}
+
+TEST_F(StandInProposers, ATreeHasCardsWhichPicturesMeasure) {
+    const PicturePtr leaf = foliage::picture(16, [](double x, double y) {
+        return glm::dvec4(0.1, 0.5, 0.1, std::hypot(x - 0.5, y - 0.5) < 0.4 ? 1 : 0);
+    });
+    auto made =
+        walk(foliage::tree(400), {models::colored("bark", {0.2, 0.1, 0.05}), foliage::leaf(leaf)});
+    ASSERT_EQ(made["cards"].size(), 1u);
+    const StandInCandidate& cards = made["cards"][0];
+    EXPECT_EQ(cards.state, CandidateState::Pictured);
+    EXPECT_TRUE(cards.viewed) << "points of cards are not where those of leaves are";
+    EXPECT_EQ(cards.mesh().triangles.size(), 16u);
+    ASSERT_EQ(cards.materials.size(), 1u);
+    EXPECT_LT(cards.error, finest_->size) << "in pictures they look like the tree";
+    const measure::AgreementReference& crown = pictures_->of_crown(job_);
+    const ray::SkinPtr skin = finest_->skin_of(cards.materials);
+    const measure::PictureAgreement seen = crown.of(cards.mesh(), skin);
+    EXPECT_NEAR(seen.coverage, 1, 0.02);
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(seen.light[i], 1, 0.05) << "as bright as the tree";
+}
+
+TEST_F(StandInProposers, WhatIsNoMaskOrCostsLessThanAPictureHasNoCards) {
+    auto ball = walk(shapes::sphere(1), {models::colored("red", {0.5, 0.1, 0.1})});
+    EXPECT_TRUE(ball["cards"].empty());
+    const std::vector<Material> leafy{models::colored("bark", {0.2, 0.1, 0.05}),
+                                      foliage::leaf(foliage::left_half())};
+    auto few = walk(foliage::tree(5, 3), leafy);
+    EXPECT_TRUE(few["cards"].empty());
+    hierarchy::FinestOptions options;
+    options.environment = true;
+    auto hedge = walk(foliage::tree(400), leafy, options);
+    EXPECT_TRUE(hedge["cards"].empty());
+    options = {};
+    options.group = true;
+    EXPECT_TRUE(walk(foliage::tree(400), leafy, options)["cards"].empty())
+        << "its children have cards, which all trees of a kind share";
+}
+
+TEST_F(StandInProposers, ACarpetOfGrassHasNoUprightCards) {
+    const std::vector<Material> leafy{models::colored("bark", {0.2, 0.1, 0.05}),
+                                      foliage::leaf(foliage::left_half())};
+    ASSERT_FALSE(walk(foliage::tree(400), leafy)["cards"].empty());
+    Mesh grass = foliage::tree(400);
+    for (glm::vec3& position : grass.positions)
+        position.z *= 0.1f;
+    EXPECT_TRUE(walk(grass, leafy)["cards"].empty());
+}
+
 TEST_F(StandInProposers, EnvironmentHasLevelsAlone) {
     hierarchy::FinestOptions options;
     options.environment = true;
     auto made = walk(shapes::terrain(40), {models::colored("grass", {0.1, 0.4, 0.1})}, options);
     EXPECT_FALSE(made["collapse"].empty());
-    for (const char* row : {"near solids", "prune", "solids", "composites", "environment"})
+    for (const char* row : {"near solids", "prune", "cards", "solids", "composites", "environment"})
         EXPECT_TRUE(made[row].empty()) << row;
 }
 
