@@ -143,9 +143,9 @@ class Scenes:
         if not maker.is_file():
             raise Missing(f"there is no {maker}")
         command = ["blender", "-b", "--python-exit-code", "1", "-P", maker, "--"]
-        cpu_of([*command, self._game(), name, path], path.with_suffix(".log"))
+        cpu_of([*command, self.game(), name, path], path.with_suffix(".log"))
 
-    def _game(self) -> Path:
+    def game(self) -> Path:
         """The game's data, unpacked from Debian's package; nothing is installed."""
         folder = self.cache / "supertuxkart"
         if not (folder / GAME / "tracks").is_dir():
