@@ -171,7 +171,6 @@ def main() -> None:
         counts = {kind: sum(level.kind == kind for level in solid) for kind in KINDS[:2]}
         path = benching.results_path(options, "errors")
         benching.write_results(path, "True errors", lines, {"levels": counts, "goal": GOAL})
-        shutil.copy(out / "worst.png", benching.ROOT / "backend" / "docs" / "true_errors.png")
 
 
 if __name__ == "__main__":
