@@ -86,8 +86,8 @@ std::optional<CrossedCards> crossed_cards(const Mesh& mesh, const ray::MeshScene
     if (std::none_of(picture.texels.begin(), picture.texels.end(),
                      [](const glm::vec4& texel) { return texel.w > 0; }))
         return std::nullopt;
+    fill_clear(picture);  // first: the fit covers texels that no ray has hit
     fit_coverage(picture, planes, scene, options.seed, job);
-    fill_clear(picture);
     const Texture color = texture_of(picture);
     Texture alpha = color;
     alpha.channel = TextureChannel::Alpha;
@@ -106,13 +106,15 @@ std::optional<CrossedCards> crossed_cards(const Mesh& mesh, const ray::MeshScene
     return out;
 }
 
-void settle_brightness(Material& material, const CrossedCards& cards) {
+bool settle_brightness(Material& material, const CrossedCards& cards) {
     Texture& color = material.base_color_texture;
     if (!(color.scale.x > 1))
-        return;
+        return false;
     const double more = color.scale.x / cards.material.base_color_texture.scale.x;
     color = texture_of(cards.picture, more);
     material.alpha_texture.picture = color.picture;
+    material.base_color = glm::dvec3(color.picture->mean) * color.scale;
+    return true;
 }
 
 }  // namespace lodestone::cards

@@ -12,6 +12,10 @@
 
 namespace lodestone::cards {
 
+/// The triangles of all cards of one thing.
+/// Law: a quad for each side of three upright planes and a level one.
+inline constexpr size_t kCardTriangles = 16;
+
 /// How cards are made.
 struct CardOptions {
     uint64_t seed = 1;
@@ -30,8 +34,8 @@ struct CrossedCards {
 };
 
 /// Brings what the colors of these cards' material are multiplied with to at most 1, by a brighter
-/// picture.
-void settle_brightness(Material& material, const CrossedCards& cards);
+/// picture, where white is white. False: it was so.
+bool settle_brightness(Material& material, const CrossedCards& cards);
 
 /// The bytes that the picture of a mesh's cards takes in a renderer's memory, before it is made; 0
 /// where there are none.

@@ -275,7 +275,7 @@ void Store::load_pictures(Model& model) const {
         loaded->bytes = read_file(folder_ / file_of(*picture));
         if (Hasher().text(loaded->bytes).value(loaded->space).result() != hash)
             fail(Status::BadFile, "'", (folder_ / file_of(*picture)).string(),
-                 "' is not the picture it was");
+                 "' is not the picture it was: delete it and update the levels");
         resident[hash] = std::move(loaded);
     }
     for (Material& material : model.materials)
@@ -401,7 +401,9 @@ uint64_t Store::write_pictures(const Model& model, const Job& job) const {
     for (const auto& [hash, picture] : pictures_of(model)) {
         job.check();
         const fs::path path = folder_ / file_of(*picture);
-        if (has_content(path))
+        // A torn one would stay for ever: its name is that of what it should hold.
+        if (picture->bytes.empty() ? has_content(path)
+                                   : file_state(path).bytes == picture->bytes.size())
             continue;
         if (picture->bytes.empty())
             fail(Status::Io, "the picture '", picture->name, "' is gone from the store");

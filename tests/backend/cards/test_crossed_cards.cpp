@@ -83,18 +83,28 @@ TEST_F(CrossedCards, AreFourPlanesSeenFromBothSidesInOneMask) {
     EXPECT_EQ(faces.size(), 8u) << "each side of each plane";
 }
 
+TEST_F(CrossedCards, WhatWasAddedBesideTheirOutlineWasBlack) {
+    const auto one = made(foliage::tree(100), {models::colored("bark", {0.1, 0.6, 0.1}),
+                                               foliage::leaf(foliage::left_half())});
+    ASSERT_TRUE(one);
+    for (const glm::vec4& texel : one->picture.texels) {
+        EXPECT_NEAR(texel.x, 0.1, 0.02);
+        EXPECT_NEAR(texel.y, 0.6, 0.05);
+    }
+}
+
 TEST_F(CrossedCards, BrightenedBeyondWhiteHaveABrighterPictureThatFilesOfOthersCanSay) {
     const auto one = made(foliage::tree(100), leafy_);
     ASSERT_TRUE(one);
     Material material = one->material;
     material.base_color_texture.scale *= 1.5;
     Material plain = material;
-    cards::settle_brightness(plain, *one);
+    EXPECT_FALSE(cards::settle_brightness(plain, *one));
     EXPECT_EQ(hash_of(plain), hash_of(material)) << "of 0.6 there is room for that";
     material.base_color_texture.scale *= 1.4;
     const glm::dvec3 wanted =
         glm::dvec3(material.base_color_texture.picture->mean) * material.base_color_texture.scale;
-    cards::settle_brightness(material, *one);
+    EXPECT_TRUE(cards::settle_brightness(material, *one));
     EXPECT_LE(material.base_color_texture.scale.x, 1);
     EXPECT_EQ(material.base_color_texture.picture, material.alpha_texture.picture);
     EXPECT_EQ(material.alpha_texture.scale.x, 1);
@@ -103,4 +113,5 @@ TEST_F(CrossedCards, BrightenedBeyondWhiteHaveABrighterPictureThatFilesOfOthersC
     EXPECT_NEAR(mean.x, wanted.x, 0.02) << "red stays below white";
     EXPECT_LE(mean.y, wanted.y) << "green is cut to it";
     EXPECT_GT(mean.y, 0.75 * wanted.y);
+    EXPECT_EQ(material.base_color, mean) << "what viewports show";
 }

@@ -13,6 +13,7 @@
 #include "scenes/small_models.h"
 #include "scenes/with_rays.h"
 #include "scratch.h"
+#include "segment/store_json.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -166,6 +167,31 @@ TEST_F(Foliage, CardsKeepTheirPictureInTheStoreAndInTheNextBuild) {
     ASSERT_NE(cards, nullptr);
     EXPECT_EQ(cards->base_color_texture.picture->hash, picture);
     EXPECT_FALSE(cards->base_color_texture.picture->bytes.empty());
+    // Another finish of the bark is a mean of it on the cards, and builds nothing.
+    const auto rough_model = [&] {
+        Model out = new_model(40);
+        Representation& finest = out.objects[0].representations[0];
+        out.materials[finest.materials[0]].roughness = 0.9;
+        summarize(finest, out);
+        summarize_assemblies(out, bottom_up(out));
+        return out;
+    };
+    Model rough = rough_model();
+    EXPECT_EQ(hierarchy::build_hierarchy(rough, store, {}, problems, {}).built, 0u);
+    Model anew = rough_model();
+    build_in(anew, "anew");
+    ASSERT_NE(cards_of(rough), nullptr);
+    EXPECT_EQ(hash_of(*cards_of(rough)), hash_of(*cards_of(anew)));
+    // A torn picture is an error that says what to do, and is made whole.
+    const std::filesystem::path file =
+        store.folder() / segment::file_of(*cards->base_color_texture.picture);
+    ASSERT_TRUE(std::filesystem::exists(file));
+    std::filesystem::resize_file(file, 10);
+    hierarchy::BuildSettings whole;
+    whole.rebuild = true;
+    Model mended = new_model();
+    hierarchy::build_hierarchy(mended, store, whole, problems, {});
+    EXPECT_GT(std::filesystem::file_size(file), 10u);
     // A picture that is gone is made again.
     std::filesystem::remove_all(store.folder() / "i");
     Model third = new_model();

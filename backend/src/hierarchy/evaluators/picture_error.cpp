@@ -128,6 +128,13 @@ void compare_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
     candidate.viewed = true;
 }
 
+void measure_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
+                    FinestPictures& pictures, const Job& job) {
+    const ray::SkinPtr skin = finest.skin_of(candidate.materials);
+    candidate.error = finest.error_at(pictures.of_crown(job).of(candidate.mesh(), skin, job).error);
+    candidate.max_error = candidate.error;
+}
+
 bool looks_alike(const Mesh& drawn, std::span<const Material> materials, double error,
                  const MeasuredFinest& finest, FinestPictures& pictures, const Job& job) {
     // The most by which the mean light may differ, relatively.

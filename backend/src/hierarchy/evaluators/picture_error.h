@@ -66,6 +66,9 @@ void compare_finely(StandInCandidate& candidate, std::span<const uint16_t> tinte
 /// The same by pictures of a crown: of cards, whose points lie anywhere behind what they show.
 void compare_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
                     FinestPictures& pictures, const Job& job);
+/// Fills the errors of a Pictured one again by pictures of a crown, in the colors that it has.
+void measure_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
+                    FinestPictures& pictures, const Job& job);
 
 /// Whether what is drawn of a group's children is about as bright as the finest, and looks like it
 /// in pictures of pixels of that error.

@@ -32,7 +32,9 @@ void propose_cards(ProposalRound& round) {
         return;
     const MeasuredFinest& finest = round.finest;
     const cards::CardOptions options{finest.options.seed, cards::CardOptions{}.texels};
-    if (cards::picture_bytes(finest.mesh, finest.attributes.centroid, options) >=
+    const auto triangles =
+        static_cast<double>(cards::kCardTriangles * round.limits.whole.costs.triangle_bytes);
+    if (cards::picture_bytes(finest.mesh, finest.attributes.centroid, options) + triangles >=
         round.limits.whole.bytes)
         return;
     std::optional<cards::CrossedCards> made = cards::crossed_cards(
@@ -42,8 +44,10 @@ void propose_cards(ProposalRound& round) {
     StandInCandidate candidate;
     candidate.payload = std::make_shared<const Mesh>(made->mesh);
     candidate.materials = {made->material};
+    candidate.means = {finest.attributes.shares};
     compare_crowns(candidate, finest, round.pictures, round.job);
-    cards::settle_brightness(candidate.materials[0], *made);
+    if (cards::settle_brightness(candidate.materials[0], *made))
+        measure_crowns(candidate, finest, round.pictures, round.job);
     round.candidates.push_back(std::move(candidate));
 }
 

@@ -7,11 +7,16 @@
 namespace lodestone::hierarchy {
 namespace {
 
-/// Whether the pictures of all its stand-ins are there. `shown`: by material, whether its are.
+/// Whether the pictures of its stand-ins' own materials are there; those of the finest are the
+/// caller's. `shown`: by material, whether its are.
 bool shows(const Object& object, const std::vector<uint8_t>& shown) {
+    if (object.representations.empty())
+        return true;
+    const std::vector<uint32_t>& given = object.representations[0].materials;
     for (size_t lod = 1; lod < object.representations.size(); ++lod) {
         for (const uint32_t material : object.representations[lod].materials) {
-            if (shown.at(material) == 0)
+            if (shown.at(material) == 0 &&
+                std::find(given.begin(), given.end(), material) == given.end())
                 return false;
         }
     }

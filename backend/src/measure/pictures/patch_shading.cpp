@@ -111,7 +111,7 @@ double ShadedPatches::largest_of(std::vector<MetSample>& met, size_t samples, do
     // Taste: a larger value forgives how thin things are shaded, and what ends in a cube.
     constexpr double kLeastCovered = 0.25;
     // The largest of smaller patches may count as so many times their size.
-    // Taste: nothing is turned by more than 0.5 in the mean; a smaller number looks at fewer sizes.
+    // Taste: samples are hardly dense enough for smaller ones; a smaller number looks at fewer sizes.
     constexpr double kMostTimes = 8;
     // Chance makes patches differ by more than the least with one in 40.
     // Law: two standard deviations.

@@ -39,7 +39,7 @@ public:
     double largest_unlike_patch(const Mesh& stand_in, const ray::MeshScene& scene,
                                 double least) const;
 
-    /// The same for each part of the finest, up to the part's width. `part_of` tells the part of a
+    /// The same for each part of the finest, of patches up to the part's width. `part_of` tells the part of a
     /// triangle of the finest, `least` is each part's. Samples lie as densely as in the whole, and
     /// resolve no smaller patches.
     std::vector<double> largest_unlike_patches(

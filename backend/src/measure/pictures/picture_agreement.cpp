@@ -314,7 +314,9 @@ std::vector<glm::dvec4> AgreementReference::side_colors(const TracedPictures& st
 }
 
 double AgreementReference::least_error() const {
-    return kPixelSides.front() * 2 * radius_ / side_;
+    const auto* const least = std::find_if(kPixelSides.begin(), kPixelSides.end(),
+                                           [&](int pixel) { return side_ % pixel == 0; });
+    return *least * 2 * radius_ / side_;
 }
 
 double AgreementReference::misses_of(const Pictures& other, const std::vector<PictureRect>& parts,

@@ -250,6 +250,8 @@ TEST_F(Agreements, TwiceTheSamplesTellHalfTheError) {
     const AgreementReference few(mesh, plain(0.5), 1);
     const AgreementReference many(mesh, plain(0.5), 1, AgreementReference::kFineSide);
     EXPECT_DOUBLE_EQ(many.least_error(), 0.5 * few.least_error());
+    const AgreementReference coarse(mesh, plain(0.5), 1, AgreementReference::kCoarseSide);
+    EXPECT_DOUBLE_EQ(coarse.of(mesh, plain(0.5)).error, coarse.least_error()) << "3 of 45";
     EXPECT_DOUBLE_EQ(few.of(mesh, plain(0.5)).error, few.least_error());
     EXPECT_DOUBLE_EQ(many.of(mesh, plain(0.5)).error, many.least_error());
     EXPECT_GT(many.of(mesh, plain(0.1)).error, 2) << "another color at any size";
