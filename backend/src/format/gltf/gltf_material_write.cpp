@@ -73,7 +73,7 @@ MaterialWriter::TextureLayer MaterialWriter::base_layer(const Material& material
     out.factor = {limited(material.base_color, 0, 1), limited(material.alpha, 0, 1)};
     if (!color && !alpha)
         return out;
-    // What is brighter than its picture is said by a drawn one, or where none is drawn, nearly.
+    // Colors brighter than their picture are said by a drawn one, or where none is drawn, nearly.
     const auto said = [&](const Texture& texture) { return !embed_ || within_one(texture.scale); };
     bool direct = color && color.channel == TextureChannel::Color && said(color) &&
                   sayable(color, ColorSpace::Srgb);
