@@ -44,7 +44,7 @@ TEST_F(CoverageFits, CrowdsOfLeavesCoverAsMuch) {
         const auto skin =
             std::make_shared<const ray::MeshSkin>(std::vector<Material>{one.material}, texels_);
         const measure::PictureAgreement seen = pictures.of(one.mesh, skin);
-        EXPECT_NEAR(seen.coverage, 1, 0.03) << leaves << " leaves; both are sampled to a hundredth";
+        EXPECT_NEAR(seen.coverage, 1, 0.05) << leaves << " leaves, in other samples";
     }
 }
 

@@ -142,11 +142,11 @@ TEST_F(StandInProposers, ACrownHasTwiceAsManyPrunedLevelsAsAGroupAndIsToldFinely
                                       foliage::leaf(foliage::left_half())};
     hierarchy::FinestOptions options;
     options.group = true;
-    const auto of_group = walk(foliage::tree(1500), leafy, options)["prune"];
+    const auto of_group = walk(foliage::tree(3000), leafy, options)["prune"];
     ASSERT_FALSE(of_group.empty());
     for (const StandInCandidate& level : of_group)
         EXPECT_GE(level.error, pictures_->taken().least_error());
-    const auto of_crown = walk(foliage::tree(1500), leafy)["prune"];
+    const auto of_crown = walk(foliage::tree(3000), leafy)["prune"];
     ASSERT_GE(of_crown.size(), 2u);
     const auto triangles = [](const StandInCandidate& level) {
         return static_cast<double>(level.mesh().triangles.size());
