@@ -44,9 +44,9 @@ constexpr float kNearFlat = 0.03f;
 /// normals of its own each triangle would be a facet.
 /// Taste: 0.01 is 6 degrees, which nobody sees among others.
 constexpr float kLeastRough = 0.01f;
-// Taste: 0.02 is 8 degrees; a larger value has fewer facets on smooth things and less relief on
+// Taste: 0.005 is 4 degrees; a larger value has fewer facets on smooth things and less relief on
 // terrain.
-constexpr double kRough = 0.02;
+constexpr double kRough = 0.005;
 // Taste: fewer are facets of a smooth thing that is seen near enough.
 constexpr size_t kManyTriangles = 2000;
 /// The cosine of corners at one vertex that share a normal.
