@@ -37,7 +37,11 @@ public:
     }
 
 private:
-    void add(std::span<const Box3> boxes, uint32_t begin, uint32_t end);
+    struct TriangleBoxes {
+        std::span<const Box3> boxes;
+        std::span<const glm::dvec3> middles;
+    };
+    Box3 add(const TriangleBoxes& given, uint32_t begin, uint32_t end);
 
     std::vector<MeshPart> parts_;
     std::vector<uint32_t> order_;

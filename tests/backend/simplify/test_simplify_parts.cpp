@@ -78,3 +78,43 @@ TEST(SimplifyParts, ThousandsOfLeavesAreCoarserBeforeTheFirstOfThemGoes) {
     const Mesh out = simplify_mesh(mesh, mesh.triangles.size() / 10);
     EXPECT_NEAR(area(out) / area(mesh), 1, 0.03);
 }
+
+TEST(SimplifyParts, ABallThatStandsAloneStaysWhenPlatesOnTheGroundGo) {
+    // 200 plates lie on a bent ground, a smaller ball hangs far above it.
+    Mesh mesh;
+    const auto add_grid = [&](uint32_t side, const auto& place) {
+        const auto first = static_cast<uint32_t>(mesh.positions.size());
+        for (uint32_t i = 0; i <= side; ++i) {
+            for (uint32_t j = 0; j <= side; ++j)
+                mesh.positions.emplace_back(
+                    place(static_cast<double>(i) / side, static_cast<double>(j) / side));
+        }
+        for (uint32_t i = 0; i < side; ++i) {
+            for (uint32_t j = 0; j < side; ++j) {
+                const uint32_t a = first + i * (side + 1) + j;
+                mesh.triangles.push_back({a, a + side + 1, a + 1});
+                mesh.triangles.push_back({a + 1, a + side + 1, a + side + 2});
+            }
+        }
+    };
+    const auto ground = [](double x, double y) { return std::sin(0.7 * x) * std::cos(0.9 * y); };
+    add_grid(
+        48, [&](double u, double v) { return glm::dvec3(40 * u, 40 * v, ground(40 * u, 40 * v)); });
+    for (int plate = 0; plate < 200; ++plate) {
+        const double x = 2 * (plate % 20) + 0.3;
+        const double y = 4 * std::floor(plate / 20.0) + 0.5;
+        add_grid(2, [&](double u, double v) {
+            return glm::dvec3(x + 1.4 * u, y + 2.8 * v, ground(x + 1.4 * u, y + 2.8 * v) + 0.02);
+        });
+    }
+    constexpr double kHeight = 30;
+    add_grid(6, [](double u, double v) {
+        const double up = 3.14159 * (u - 0.5);
+        const double around = 2 * 3.14159 * v;
+        return glm::dvec3(20, 20, kHeight) + 0.6 * glm::dvec3(std::cos(up) * std::cos(around),
+                                                              std::cos(up) * std::sin(around),
+                                                              std::sin(up));
+    });
+    const Mesh level = simplify_mesh(mesh, 600);
+    EXPECT_NEAR(bound_of(level.positions).box.high.z, kHeight + 0.6, 0.8);
+}

@@ -17,8 +17,8 @@ namespace {
 // pixels large or more, and is matched to look alike.
 // Taste: a larger value matches fewer levels.
 constexpr double kUsedNear = 1.0 / 12;
-// An error over the radius. A level that is used from this error on is seen where the whole is 16
-// pixels large or less: few samples tell how bright these are.
+// An error over the radius. A solid that is used from this error on is seen where the whole is 16
+// pixels large or less: few samples tell how bright it is, but not how bright single leaves are.
 // Law: an eighth of the radius is a sixteenth of the size.
 constexpr double kUsedFar = 1.0 / 8;
 
@@ -65,7 +65,7 @@ void match_brightness(StandInCandidate& candidate, const MeasuredFinest& finest,
     const double child_error = finest.options.child_error;
     const double own = candidate.error - child_error;
     const Pictures& reference = finest.glows ? pictures.take(finest.mesh, Pictures::kSide, job)
-                                : own >= kUsedFar * finest.size
+                                : own >= kUsedFar * finest.size && candidate.kind != Kind::Mesh
                                     ? pictures.take_few(job)
                                     : pictures.take(finest.mesh, Pictures::kBrightSide, job);
     ray::SkinPtr current = finest.skin_of(candidate.materials);

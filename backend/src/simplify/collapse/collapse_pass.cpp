@@ -67,6 +67,10 @@ constexpr size_t kLists = 12;
 // Taste: more displace what is still needed, fewer come too late.
 constexpr size_t kTriangles = 4;
 
+double cost_of_key(uint32_t key) {
+    return static_cast<double>(std::bit_cast<float>(key));
+}
+
 bool is_slow(size_t gone, size_t wanted) {
     return static_cast<double>(gone) < kSlow * static_cast<double>(wanted);
 }
@@ -178,6 +182,7 @@ public:
         if (effort_ == CollapseEffort::Careful && gone_ == 0) {
             // No edge within the limit can be collapsed: parts go before dearer edges do.
             limit_ = kImpossible - 1;
+            r_.parts_.locate(r_.mesh_, cost_of_key(limit_), next_part_);
             const std::vector<uint32_t> all = rounds_of(chunks, removable_, limit_, want_);
             if (all.size() > 1)
                 remove_parts_below(all[all.size() - 2] << kKeyShift);
@@ -198,7 +203,7 @@ private:
         gone_ += part.triangles - taken_[part.part];
     }
     void remove_parts_below(uint32_t key) {
-        const auto cost = static_cast<double>(std::bit_cast<float>(std::min(key, limit_)));
+        const double cost = cost_of_key(std::min(key, limit_));
         while (next_part_ < removable_.size() && removable_[next_part_].cost < cost &&
                gone_ < want_)
             remove_next_part();
@@ -339,6 +344,7 @@ size_t CollapseReducer::pass(size_t target, CollapseEffort effort, const Job& jo
         loops_ = !has_tunnels(mesh_, adjacency_);
     }
     const bool usual = effort == CollapseEffort::Careful && reach_ == 1;
+    parts_.locate(mesh_, cost_of_key(limit));
     edges_.take(mesh_, adjacency_, effort, limit, usual ? kHeld : kMostHeld, job);
     CollapseBatch(*this, effort, start, want, limit).run(job);
     if (effort >= CollapseEffort::Topology)

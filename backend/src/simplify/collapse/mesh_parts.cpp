@@ -1,9 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simplify/collapse/mesh_parts.h"
 
+#include "simplify/collapse/part_distances.h"
+
 #include <algorithm>
+#include <utility>
 
 namespace lodestone::simplify {
+namespace {
+
+/// The triangles, of the mean area, that removing a part takes as far off as the part lies from
+/// what is left without it.
+/// Law: as many as there are for each vertex; a collapse moves about that much.
+constexpr double kTakenOff = 2;
+
+bool cheaper(const CollapsePart& a, const CollapsePart& b) {
+    return a.cost < b.cost;
+}
+
+}  // namespace
 
 void CollapseParts::measure(const CollapseMesh& mesh, double weight) {
     parts_.clear();
@@ -45,8 +60,7 @@ void CollapseParts::measure(const CollapseMesh& mesh, double weight) {
         const double shift = sum.area > 0 ? glm::dot(sum.first, sum.first) / sum.area : 0;
         parts_.push_back({part, sum.triangles, weight * std::max(0.0, sum.second - shift)});
     }
-    std::stable_sort(parts_.begin(), parts_.end(),
-                     [](const CollapsePart& a, const CollapsePart& b) { return a.cost < b.cost; });
+    std::stable_sort(parts_.begin(), parts_.end(), cheaper);
     parts_.pop_back();
 }
 
@@ -61,6 +75,31 @@ void CollapseParts::count(const CollapseMesh& mesh) {
     for (CollapsePart& part : parts_)
         part.triangles = counts[part.part];
     std::erase_if(parts_, [](const CollapsePart& part) { return part.triangles == 0; });
+}
+
+void CollapseParts::locate(const CollapseMesh& mesh, double below, size_t from) {
+    const auto first = parts_.begin() + static_cast<ptrdiff_t>(from);
+    const auto end = std::partition_point(
+        first, parts_.end(), [&](const CollapsePart& part) { return part.cost < below; });
+    if (std::all_of(first, end, [](const CollapsePart& part) { return part.located; }))
+        return;
+    std::vector<uint32_t> ranks(mesh.part_count, static_cast<uint32_t>(parts_.size()));
+    for (uint32_t i = 0; i < parts_.size(); ++i)
+        ranks[parts_[i].part] = i;
+    const PartDistances distances(mesh, ranks);
+    double area = 0;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+        area += mesh.dead(i) ? 0 : glm::length(glm::dvec3(mesh.facets[i]));
+    const double weight = kTakenOff * area / static_cast<double>(mesh.live);
+    if (!(weight > 0))
+        return;
+    for (auto part = first; part != end; ++part) {
+        if (std::exchange(part->located, true))
+            continue;
+        const auto rank = static_cast<uint32_t>(part - parts_.begin());
+        part->cost = weight * distances.farthest(rank, part->cost / weight);
+    }
+    std::stable_sort(first, parts_.end(), cheaper);
 }
 
 size_t CollapseParts::remove(CollapseMesh& mesh, const std::vector<uint8_t>& doomed) const {

@@ -10,6 +10,7 @@ struct CollapsePart {
     uint32_t part = 0;
     size_t triangles = 0;  // the number at the start of the pass
     double cost = 0;       // the cost of removing it, comparable to that of a collapse
+    bool located = false;  // the cost counts how far it lies from what is left without it
 };
 
 class CollapseParts {
@@ -21,6 +22,12 @@ public:
     void measure(const CollapseMesh& mesh, double weight);
     /// Counts the triangles that are left of the parts, before another pass.
     void count(const CollapseMesh& mesh);
+    /// Makes the costs of the parts, from the removable one with number `from` on, count how far a
+    /// part lies from what is left without it and without all cheaper ones: what lies on another
+    /// part may go, what stands alone stays longer. Only parts that are cheaper than `below` are
+    /// located, each once since they were measured. cost: n log n of the live triangles where one
+    /// is.
+    void locate(const CollapseMesh& mesh, double below, size_t from = 0);
 
     /// The parts, cheapest first, without the dearest one (which always stays).
     const std::vector<CollapsePart>& removable() const { return parts_; }
