@@ -78,6 +78,37 @@ double most_of(std::vector<double>& far, size_t pixels) {
     return far[few];
 }
 
+/// The distances of points, mostly neighbors in the list, to one surface.
+class NearDistances {
+public:
+    NearDistances(const ray::MeshScene& scene, double near)
+        : scene_(scene), near_(near), exact_(!scene.see_through()) {}
+
+    /// Metres to the nearest point; where that is `near` or less, any number up to `near`.
+    double operator()(const glm::dvec3& point) {
+        // A point beside one that is near is no farther off than that one and the way to it.
+        const double most = known_ + glm::distance(point, at_);
+        if (most <= near_)
+            return most;
+        const ray::ClosestPoint closest =
+            scene_.closest_point(point, std::numeric_limits<double>::infinity(), last_, near_);
+        last_ = closest.triangle;
+        if (exact_) {
+            known_ = closest.distance;
+            at_ = point;
+        }
+        return closest.distance;
+    }
+
+private:
+    const ray::MeshScene& scene_;
+    double near_;
+    bool exact_;  // else edges of what is seen through are known roughly
+    uint32_t last_ = ray::kNoTriangle;
+    double known_ = std::numeric_limits<double>::infinity();  // the distance of this point:
+    glm::dvec3 at_{0.0};
+};
+
 }  // namespace
 
 ViewDistances::ViewDistances(const Mesh& finest, const ray::MeshScene& scene)
@@ -139,15 +170,8 @@ double ViewDistances::worst(const ray::MeshScene& stand_in, ViewedWay ways, doub
     parallel_for((asked.size() + kBlock - 1) / kBlock, [&](size_t block) {
         job.check();
         const ray::FlushDenormals burst;
-        uint32_t last = ray::kNoTriangle;
-        uint32_t last_back = ray::kNoTriangle;
-        const auto distance = [&](const ray::MeshScene& scene, const glm::dvec3& point,
-                                  uint32_t& perhaps) {
-            const ray::ClosestPoint closest =
-                scene.closest_point(point, std::numeric_limits<double>::infinity(), perhaps, near);
-            perhaps = closest.triangle;
-            return closest.distance;
-        };
+        NearDistances to_stand_in(stand_in, near);
+        NearDistances to_finest(scene_, near);
         for (size_t i = block * kBlock; i < std::min(asked.size(), (block + 1) * kBlock); ++i) {
             const ViewRay& one = asked[i];
             ray::RayHit hit;
@@ -158,9 +182,9 @@ double ViewDistances::worst(const ray::MeshScene& stand_in, ViewedWay ways, doub
                 continue;
             }
             if (one.seen)
-                off[i] = distance(stand_in, one.point, last);
+                off[i] = to_stand_in(one.point);
             if (hit.hit)
-                off[i] = std::max(off[i], distance(scene_, hit.point, last_back));
+                off[i] = std::max(off[i], to_finest(hit.point));
         }
     });
     double out = 0;

@@ -75,6 +75,18 @@ TEST_F(ViewDistance, AFewPixelsSeeWhatIsLarge) {
     EXPECT_NEAR(worst(chimney, shapes::box({0, 0, 0}, {4, 4, 4}), ViewedWay::Both, 1), 2, 0.2);
 }
 
+TEST_F(ViewDistance, WhatCountsAsNearChangesNothingFartherOff) {
+    // Neighbors of a point that is near are not looked up.
+    const Mesh ball = shapes::sphere(1);
+    const Mesh spiked = with_box(shapes::sphere(0.97), {-0.15, -0.15, 0.9}, {0.3, 0.3, 0.4});
+    for (const ViewedWay ways : {ViewedWay::ToStandIn, ViewedWay::Both}) {
+        const double off = worst(spiked, ball, ways);
+        EXPECT_GT(off, 0.25);
+        for (const double near : {0.01, 0.05, 0.1, 0.2})
+            EXPECT_EQ(worst(spiked, ball, ways, near), off) << near;
+    }
+}
+
 TEST_F(ViewDistance, NothingIsFartherApartThanItsBoundSays) {
     using measure::farthest_apart;
     EXPECT_EQ(farthest_apart({}, shapes::cube()), std::numeric_limits<double>::infinity());
