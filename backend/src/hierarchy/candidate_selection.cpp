@@ -110,10 +110,10 @@ std::vector<StandInCandidate> select_candidates(std::vector<StandInCandidate>& a
                              last ? std::numeric_limits<double>::infinity() : kept[i + 1].error,
                              job);
             farther = farther || kept[i].error > before.error;
-            if (before.kind != Kind::Mesh || before.state == kept[i].state)
+            if (before.state == kept[i].state)
                 continue;
             for (StandInCandidate& candidate : all) {
-                if (is_same(candidate.payload, before.payload))
+                if (is_same(candidate, before))
                     candidate = kept[i];
             }
         }
