@@ -25,20 +25,20 @@ uint32_t samples_of(const Mesh& finest, bool environment, const BuildSettings& s
     constexpr uint32_t kOfEnvironment = 8;
     // The samples of a triangle where they are few.
     // Taste: more know errors better, in time in proportion.
-    constexpr uint64_t kOfTriangle = 4;
+    constexpr uint64_t kOfTriangle = 2;
     // The fewest samples of a mesh.
     // Taste: more know the errors of simple meshes better, in time in proportion.
-    constexpr uint64_t kFewest = 512;
+    constexpr uint64_t kFewest = 256;
     if (environment)
         return kOfEnvironment * settings.samples;
     return static_cast<uint32_t>(std::min<uint64_t>(
         settings.samples, std::max(kFewest, kOfTriangle * finest.triangles.size())));
 }
 
-/// Few samples come with few rays, but colors and solids are made by them: twice the share.
+/// Few samples come with few rays, but colors and solids are made by them: four times the share.
 uint64_t rays_of(uint32_t samples, const BuildSettings& settings) {
-    const uint64_t twice = 2 * uint64_t{samples};
-    return twice < settings.samples ? settings.rays * twice / settings.samples : settings.rays;
+    const uint64_t more = 4 * uint64_t{samples};
+    return more < settings.samples ? settings.rays * more / settings.samples : settings.rays;
 }
 
 }  // namespace
