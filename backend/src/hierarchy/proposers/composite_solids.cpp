@@ -142,6 +142,10 @@ void propose_composites(ProposalRound& round) {
     const ReplacedObject& whole = round.limits.whole;
     if (round.finest.options.environment || whole.ground || round.painted)
         return;
+    // Parts are solids themselves from far. Where distances tell well, composites of them are
+    // hardly ever drawn.
+    if (round.finest.options.group && !round.by_pictures)
+        return;
     const double solids = round.by_pictures ? kSolidsByPictures : kSolidsByDistance;
     const double dearer = solids * static_cast<double>(whole.costs.primitive_bytes) *
                           static_cast<double>(std::max<uint64_t>(1, whole.uses));

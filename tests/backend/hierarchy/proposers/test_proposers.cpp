@@ -2,6 +2,7 @@
 // Guards each row of the proposers alone: what it adds to what those before it proposed.
 #include "base/error.h"
 #include "hierarchy/proposers/collapse_levels.h"
+#include "hierarchy/proposers/composite_solids.h"
 #include "hierarchy/proposers/proposers.h"
 #include "povray_export/scene/povray_costs.h"
 #include "scenes/leaf_cards.h"
@@ -115,6 +116,24 @@ TEST_F(StandInProposers, ABallIsCollapsedAndReplacedByDistance) {
     EXPECT_TRUE(made["environment"].empty());
     EXPECT_FALSE(round_->by_pictures);
     EXPECT_THROW(static_cast<void>(pictures_->taken()), Error) << "pictures take long";
+}
+
+TEST_F(StandInProposers, OnlyAnObjectHasCompositesWhereDistancesTellWell) {
+    Mesh balls;
+    for (int i = 0; i < 6; ++i)
+        append(balls, shapes::sphere(1), {glm::dmat3(1.0), {3.0 * (i % 3), 3.0 * (i % 2), 0}});
+    const std::vector<Material> red{models::colored("red", {0.5, 0.1, 0.1})};
+    const auto composites_of = [&](bool group) {
+        hierarchy::FinestOptions options;
+        options.group = group;
+        walk(balls, red, options);
+        EXPECT_FALSE(round_->by_pictures);
+        round_->candidates.clear();  // as if no level was near
+        hierarchy::propose_composites(*round_);
+        return round_->candidates.size();
+    };
+    EXPECT_GT(composites_of(false), 0u);
+    EXPECT_EQ(composites_of(true), 0u);
 }
 
 TEST_F(StandInProposers, ATreeIsPrunedAndComparedByPictures) {
