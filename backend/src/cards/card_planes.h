@@ -17,12 +17,13 @@ struct CardPlane {
     glm::dvec2 half_size{0.0};  // along right and up
 
     glm::dvec3 normal() const;  // unit, towards the viewer
+    bool upright() const { return up.z > 0; }
     /// The point at (x, y), each -1...1 from border to border.
     glm::dvec3 at(double x, double y) const;
 };
 
-/// Upright planes through the vertical line through `middle`, turned by equal angles, and a level
-/// one through `middle`, the last. Empty where the mesh has no extent in one of these.
+/// Upright planes through the vertical line through `middle`, turned by equal angles, and two
+/// level ones at a quarter and three quarters of the height, the last. Empty where the mesh has no extent in one of these.
 std::vector<CardPlane> crossed_planes(const Mesh& mesh, const glm::dvec3& middle);
 
 }  // namespace lodestone::cards

@@ -2,129 +2,25 @@
 #include "cards/coverage_fit.h"
 
 #include "base/parallel.h"
-#include "measure/pictures/cube_views.h"
+#include "cards/card_views.h"
 #include "measure/visible/sobol_points.h"
 
-#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace lodestone::cards {
 namespace {
 
-// Pixels along a side of a view.
-// Taste: more see smaller differences, in time that grows with the square.
-constexpr int kPixels = 40;
-// Samples along a side of a pixel.
-// Taste: more know the coverage of pixels better, in time that grows with the square.
-constexpr int kSamples = 2;
-constexpr int kRow = kPixels * kSamples;
-
-/// A place where a ray meets a card: the four texels that are interpolated there.
-struct CardCrossing {
-    std::array<uint32_t, 4> texels{};
-    std::array<float, 4> parts{};  // of each in the interpolated share
-
-    float share(const CardPicture& picture) const {
-        float out = 0;
-        for (size_t i = 0; i < texels.size(); ++i)
-            out += parts[i] * picture.texels[texels[i]].w;
-        return out;
-    }
+/// A view, and the coverage that it lacked over rounds.
+struct ViewToFit {
+    CardView view;
+    float owed = 0;  // the sum of what was lacking, as a share of what is wanted
 };
 
-/// Where a ray meets a card; nothing beside it, or where it is seen too flat to show anything.
-std::optional<CardCrossing> cross(const CardPlane& plane, const CardPatch& patch,
-                                  const CardPicture& picture, const glm::dvec3& origin,
-                                  const glm::dvec3& along) {
-    // The cosine from which on a card shows something.
-    // Taste: a larger value fits fewer views of each card.
-    constexpr double kFlat = 0.05;
-    const double facing = glm::dot(along, plane.normal());
-    if (std::abs(facing) < kFlat)
-        return std::nullopt;
-    const double t = glm::dot(plane.middle - origin, plane.normal()) / facing;
-    const glm::dvec3 arm = origin + t * along - plane.middle;
-    const double x = glm::dot(arm, plane.right) / plane.half_size.x;
-    const double y = glm::dot(arm, plane.up) / plane.half_size.y;
-    if (!(std::abs(x) <= 1 && std::abs(y) <= 1))
-        return std::nullopt;
-    // Texels have their values in their middles; those of the clear border around a card exist too.
-    const double column = patch.left + 0.5 * (1 + x) * patch.width - 0.5;
-    const double row = patch.top + 0.5 * (1 - y) * patch.height - 0.5;
-    const auto left = static_cast<int>(column);
-    const auto top = static_cast<int>(row);
-    const auto fx = static_cast<float>(column - left);
-    const auto fy = static_cast<float>(row - top);
-    CardCrossing out;
-    out.parts = {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
-    for (int i = 0; i < 4; ++i)
-        out.texels[static_cast<size_t>(i)] =
-            static_cast<uint32_t>(picture.index(left + i % 2, top + i / 2));
-    return out;
-}
-
-/// All rays of one view.
-struct CardView {
-    std::vector<CardCrossing> crossings;
-    std::vector<uint32_t> begin;  // by sample, its first crossing; one more at the end
-    std::vector<float> wanted;    // by pixel: the share of it in which the mesh is seen
-};
-
-size_t pixel_of(int sample) {
-    const auto row = static_cast<size_t>(sample / kRow / kSamples);
-    return row * kPixels + static_cast<size_t>(sample % kRow / kSamples);
-}
-
-/// The share of a pixel that a sample stands for.
-/// Law: all of its samples are the whole pixel.
-constexpr float kOfPixel = 1.0F / (kSamples * kSamples);
-
-/// The sphere around all cards.
-struct CardBall {
-    glm::dvec3 center{0.0};
-    double radius = 0;
-
-    explicit CardBall(std::span<const CardPlane> planes) {
-        Box3 box;
-        for (const CardPlane& plane : planes) {
-            for (const double x : {-1.0, 1.0}) {
-                box.add(plane.at(x, -1));
-                box.add(plane.at(x, 1));
-            }
-        }
-        center = box.center();
-        radius = 0.5 * glm::length(box.size());
-    }
-};
-
-CardView taken(const CardPicture& picture, std::span<const CardPlane> planes, const CardBall& ball,
-               const ray::MeshScene& scene, const glm::dvec3& towards, uint64_t seed) {
-    const ray::FlushDenormals burst;
-    const glm::dmat3 frame = measure::picture_frame(towards);
-    CardView out;
-    out.wanted.assign(size_t{kPixels} * kPixels, 0);
-    for (int sample = 0; sample < kRow * kRow; ++sample) {
-        out.begin.push_back(static_cast<uint32_t>(out.crossings.size()));
-        const std::array<double, 2> u = measure::jitter(seed, static_cast<uint64_t>(sample));
-        const int line = sample / kRow;
-        const double x = 2 * (sample % kRow + u[0]) / kRow - 1;
-        const double y = 2 * (line + u[1]) / kRow - 1;
-        const glm::dvec3 origin = ball.center + ball.radius * (frame * glm::dvec3(x, y, 2));
-        for (size_t card = 0; card < planes.size(); ++card) {
-            const auto crossing =
-                cross(planes[card], picture.patches[card], picture, origin, -towards);
-            if (crossing)
-                out.crossings.push_back(*crossing);
-        }
-        if (scene.first_hit(origin, -towards).hit)
-            out.wanted[pixel_of(sample)] += kOfPixel;
-    }
-    out.begin.push_back(static_cast<uint32_t>(out.crossings.size()));
-    return out;
-}
+using FitViews = std::vector<ViewToFit>;
 
 /// The findings of a round: by texel, the coverage that its pixels lack, and over how much of it.
 struct Lacking {
@@ -133,27 +29,42 @@ struct Lacking {
 
     explicit Lacking(size_t texels) : coverage(texels, 0), weight(texels, 0) {}
 
-    void add(const CardView& view, const CardPicture& picture) {
+    void add(ViewToFit& fit, const CardPicture& picture) {
+        // How much the share that a view lacks in all counts beside that of a pixel.
+        // Taste: a larger value covers as much from each side, and less in the right places.
+        constexpr float kNow = 0.5F;
+        // The same of what it lacked in all rounds: what no pixel can mend, others make up for.
+        // Taste: as kNow; much larger ones let texels come and go in turns.
+        constexpr float kOwed = 0.3F;
+        // The most that is owed.
+        // Taste: a larger one lets a view that no cards can cover rule all others.
+        constexpr float kMostOwed = 3;
+        const CardView& view = fit.view;
         std::vector<uint8_t> shown(view.crossings.size());
-        std::vector<int> covers(size_t{kRow} * kRow, 0);
+        for (size_t i = 0; i < shown.size(); ++i)
+            shown[i] = view.crossings[i].shows(picture) ? 1 : 0;
+        std::vector<int> covers(view.samples(), 0);
         std::vector<float> missing = view.wanted;
-        for (int sample = 0; sample < kRow * kRow; ++sample) {
-            const auto s = static_cast<size_t>(sample);
-            for (uint32_t i = view.begin[s]; i < view.begin[s + 1]; ++i) {
-                shown[i] = view.crossings[i].share(picture) >= kCardCutoff ? 1 : 0;
-                covers[s] += shown[i];
-            }
-            if (covers[s] > 0)
-                missing[pixel_of(sample)] -= kOfPixel;
+        for (size_t sample = 0; sample < view.samples(); ++sample) {
+            for (uint32_t i = view.begin[sample]; i < view.begin[sample + 1]; ++i)
+                covers[sample] += shown[i];
+            if (covers[sample] > 0)
+                missing[CardView::pixel_of(sample)] -= CardView::share_of_sample();
         }
-        for (int sample = 0; sample < kRow * kRow; ++sample) {
-            const auto s = static_cast<size_t>(sample);
-            for (uint32_t i = view.begin[s]; i < view.begin[s + 1]; ++i) {
-                if (covers[s] > shown[i])
+        const float share =
+            view.all_wanted > 0
+                ? std::accumulate(missing.begin(), missing.end(), 0.0F) / view.all_wanted
+                : 0.0F;
+        fit.owed = std::clamp(fit.owed + kOwed * share, -kMostOwed, kMostOwed);
+        const float in_all = fit.owed + kNow * share;
+        for (size_t sample = 0; sample < view.samples(); ++sample) {
+            for (uint32_t i = view.begin[sample]; i < view.begin[sample + 1]; ++i) {
+                if (covers[sample] > shown[i])
                     continue;  // another card covers it in any case
                 const CardCrossing& at = view.crossings[i];
                 for (size_t k = 0; k < at.texels.size(); ++k) {
-                    coverage[at.texels[k]] += at.parts[k] * missing[pixel_of(sample)];
+                    coverage[at.texels[k]] +=
+                        at.parts[k] * (missing[CardView::pixel_of(sample)] + in_all);
                     weight[at.texels[k]] += at.parts[k];
                 }
             }
@@ -161,68 +72,79 @@ struct Lacking {
     }
 };
 
-using CardViews = std::vector<CardView>;
-
-CardViews all_views(const CardPicture& picture, std::span<const CardPlane> planes,
-                    const ray::MeshScene& scene, uint64_t seed, const Job& job) {
-    std::vector<glm::dvec3> directions = measure::cube_directions();
-    directions.resize(directions.size() / 2);  // the opposite ones cover the same
-    const CardBall ball(planes);
-    CardViews out(directions.size());
-    parallel_for(out.size(), [&](size_t i) {
-        job.check();
-        out[i] = taken(picture, planes, ball, scene, directions[i], measure::scramble(seed + i));
-    });
-    return out;
-}
-
+/// Adds change(index) to the shares of a patch's texels.
 template <typename Change>
-void change_shares(CardPicture& picture, const Change& change) {
-    for (const CardPatch& patch : picture.patches) {
-        for (int row = patch.top; row < patch.top + patch.height; ++row) {
-            for (int column = patch.left; column < patch.left + patch.width; ++column) {
-                const size_t at = picture.index(column, row);
-                float& share = picture.texels[at].w;
-                share = std::clamp(share + change(at), 0.0F, 1.0F);
-            }
+void change_shares(CardPicture& picture, const CardPatch& patch, const Change& change) {
+    for (int row = patch.top; row < patch.top + patch.height; ++row) {
+        for (int column = patch.left; column < patch.left + patch.width; ++column) {
+            const size_t at = picture.index(column, row);
+            float& share = picture.texels[at].w;
+            share = std::clamp(share + change(at), 0.0F, 1.0F);
         }
     }
 }
 
-/// By how much the cards cover more than the mesh in all views together, in pixels.
-double too_much(const CardViews& views, const CardPicture& picture) {
-    double out = 0;
-    for (const CardView& view : views) {
-        for (const float share : view.wanted)
-            out -= double{share};
-        for (size_t s = 0; s + 1 < view.begin.size(); ++s) {
-            const auto shown = [&](const CardCrossing& at) {
-                return at.share(picture) >= kCardCutoff;
-            };
-            const auto* first = view.crossings.data() + view.begin[s];
-            const auto* last = view.crossings.data() + view.begin[s + 1];
-            if (std::any_of(first, last, shown))
-                out += double{kOfPixel};
+/// Brings texels to what their pixels lack.
+void fit_texels(CardPicture& picture, std::vector<FitViews>& sets, const Job& job) {
+    // Taste: more rounds come a little nearer, in time in proportion.
+    constexpr size_t kRounds = 48;
+    // The part of what is lacking that the first round adds.
+    // Taste: a larger value needs fewer rounds, and lets texels come and go in turns.
+    constexpr float kStep = 0.25F;
+    // The rounds after which it is half of that, a third after twice as many, and so on.
+    // Taste: a larger value keeps texels coming and going.
+    constexpr float kHalved = 16;
+    for (size_t round = 0; round < kRounds; ++round) {
+        job.check();
+        Lacking lacking(picture.texels.size());
+        for (ViewToFit& fit : sets[round % sets.size()])
+            lacking.add(fit, picture);
+        const float step = kStep / (1 + static_cast<float>(round) / kHalved);
+        for (const CardPatch& patch : picture.patches) {
+            change_shares(picture, patch, [&](size_t at) {
+                return lacking.weight[at] > 0 ? step * lacking.coverage[at] / lacking.weight[at]
+                                              : 0.0F;
+            });
         }
     }
-    return out;
 }
 
-/// Adds one number to all shares that are not 0, so that the cards cover as much as the mesh in all.
-void level_coverage(CardPicture& picture, const CardViews& views) {
+/// Adds a number to all shares of a plane that are not 0, one plane after another, so that the cards
+/// cover as much as the mesh in the mean of the views that face the plane.
+void level_coverage(CardPicture& picture, std::span<const CardPlane> planes,
+                    const std::vector<CardView>& views) {
     // The most that is added.
     // Taste: a larger value lets cards grow over what they were cast from.
-    constexpr float kMost = 0.25F;
+    constexpr float kMost = 0.5F;
     // Law: halving the range so often leaves less than the 8 bits of the picture hold.
     constexpr int kHalvings = 8;
+    // Each plane changes what the others have to cover.
+    // Taste: more come a little nearer, in time in proportion.
+    constexpr int kSweeps = 3;
     const CardPicture before = picture;
-    float low = -kMost;
-    float high = kMost;
-    for (int i = 0; i < kHalvings; ++i) {
-        const float middle = 0.5F * (low + high);
-        picture = before;
-        change_shares(picture, [&](size_t at) { return before.texels[at].w > 0 ? middle : 0.0F; });
-        (too_much(views, picture) > 0 ? high : low) = middle;
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+        for (size_t plane = 0; plane < planes.size(); ++plane) {
+            const auto sum_with = [&](float added) {
+                change_shares(picture, picture.patches[plane], [&](size_t at) {
+                    const float share = before.texels[at].w;
+                    return (share > 0 ? share + added : 0.0F) - picture.texels[at].w;
+                });
+                std::vector<double> parts(views.size(), 0);
+                parallel_for(views.size(), [&](size_t i) {
+                    const double facing = glm::dot(planes[plane].normal(), views[i].towards);
+                    if (views[i].all_wanted > 0)
+                        parts[i] = facing * facing * views[i].too_much(picture) /
+                                   double{views[i].all_wanted};
+                });
+                return std::accumulate(parts.begin(), parts.end(), 0.0);
+            };
+            float low = -kMost;
+            float high = kMost;
+            for (int i = 0; i < kHalvings; ++i) {
+                const float middle = 0.5F * (low + high);
+                (sum_with(middle) > 0 ? high : low) = middle;
+            }
+        }
     }
 }
 
@@ -230,24 +152,26 @@ void level_coverage(CardPicture& picture, const CardViews& views) {
 
 void fit_coverage(CardPicture& picture, std::span<const CardPlane> planes,
                   const ray::MeshScene& scene, uint64_t seed, const Job& job) {
-    // Taste: more rounds come a little nearer, in time in proportion.
-    constexpr int kRounds = 24;
-    // The part of what is lacking that a round adds.
-    // Taste: a larger value needs fewer rounds, and lets texels come and go in turns.
-    constexpr float kStep = 0.25F;
-    const CardViews views = all_views(picture, planes, scene, seed, job);
-    for (int round = 0; round < kRounds; ++round) {
-        job.check();
-        Lacking lacking(picture.texels.size());
-        for (const CardView& view : views)
-            lacking.add(view, picture);
-        change_shares(picture, [&](size_t at) {
-            return lacking.weight[at] > 0 ? kStep * lacking.coverage[at] / lacking.weight[at]
-                                          : 0.0F;
-        });
+    // Views that take turns: texels that follow the same ones alone cover otherwise between them.
+    // Taste: more fit views better that are not among them, and need rays in proportion.
+    constexpr size_t kSets = 2;
+    // Radians by which views that check the others are turned.
+    // Law: nothing of 1 is a part of a turn or of the golden angle.
+    constexpr double kAside = 1;
+    std::vector<FitViews> sets(kSets);
+    SkyDirections directions;
+    for (size_t set = 0; set < kSets; ++set) {
+        directions.first = set;
+        directions.step = kSets;
+        for (CardView& view :
+             card_views(picture, planes, scene, directions, measure::scramble(seed + set), job))
+            sets[set].push_back({std::move(view)});
     }
-    // Texels follow the samples that they were fitted to; other samples tell what that adds up to.
-    level_coverage(picture, all_views(picture, planes, scene, measure::scramble(seed), job));
+    fit_texels(picture, sets, job);
+    // Texels follow the samples that they were fitted to; others tell what that adds up to.
+    level_coverage(picture, planes,
+                   card_views(picture, planes, scene, {directions.count, 0, 1, kAside},
+                              measure::scramble(seed + kSets), job));
 }
 
 }  // namespace lodestone::cards

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cards/crossed_cards.h"
 
+#include "cards/card_light.h"
+#include "cards/card_normals.h"
 #include "cards/coverage_fit.h"
 #include "solids/stand_in_material.h"
 
@@ -19,25 +21,6 @@ glm::vec2 place_in(const CardPicture& picture, const CardPatch& patch, double x,
             static_cast<float>(1 - row / picture.height)};
 }
 
-/// The shading normal at a corner of one side of a card (of that unit normal), by the mean of those
-/// that it shows there.
-glm::vec3 shading_normal(const glm::dvec3& mean, const glm::dvec3& face) {
-    // The cosine of the angle to the card's own normal: nearly 15 degrees.
-    // Law: povray_export/mesh/leaf_normals has no leaf bent farther, for POV-Ray turns normals to
-    // whoever looks, and would light one side as the other.
-    constexpr double kLeastCosine = 0.966;
-    const double size = glm::length(mean);
-    const double along = glm::dot(mean, face);
-    const glm::dvec3 across = mean - along * face;
-    const double wide = glm::length(across);
-    if (!(size > 0) || !(wide > 0) || !std::isfinite(size))
-        return glm::vec3(face);
-    if (along >= kLeastCosine * size)
-        return glm::vec3(mean / size);
-    return glm::vec3(kLeastCosine * face +
-                     std::sqrt(1 - kLeastCosine * kLeastCosine) / wide * across);
-}
-
 /// Two rectangles for each plane, back to back: each side has its own normals.
 Mesh mesh_of(const std::vector<CardPlane>& planes, const CardPicture& picture) {
     // The distance of a side from its plane, over its half diagonal.
@@ -51,12 +34,13 @@ Mesh mesh_of(const std::vector<CardPlane>& planes, const CardPicture& picture) {
             const glm::dvec3 face = sign * plane.normal();
             const glm::dvec3 off = kApart * glm::length(plane.half_size) * face;
             const auto first = static_cast<uint32_t>(out.positions.size());
+            const SideNormals normals(picture.normals[i][side], face);
             for (const glm::dvec2& corner :
                  {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(1, 1), glm::dvec2(-1, 1)}) {
                 const glm::dvec2 at(sign * corner.x, corner.y);
                 out.positions.emplace_back(plane.at(at.x, at.y) + off);
                 out.uvs.push_back(place_in(picture, picture.patches[i], at.x, at.y));
-                out.normals.push_back(shading_normal(picture.normals[i][side].at(at), face));
+                out.normals.emplace_back(normals.at(at));
             }
             out.triangles.emplace_back(first, first + 1, first + 2);
             out.triangles.emplace_back(first, first + 2, first + 3);
@@ -88,6 +72,7 @@ std::optional<CrossedCards> crossed_cards(const Mesh& mesh, const ray::MeshScene
         return std::nullopt;
     fill_clear(picture);  // first: the fit covers texels that no ray has hit
     fit_coverage(picture, planes, scene, options.seed, job);
+    match_light(picture, planes, mesh, scene, skin, options.seed, job);
     const Texture color = texture_of(picture);
     Texture alpha = color;
     alpha.channel = TextureChannel::Alpha;
@@ -104,17 +89,6 @@ std::optional<CrossedCards> crossed_cards(const Mesh& mesh, const ray::MeshScene
     out.mesh = mesh_of(planes, picture);
     out.picture = std::move(picture);
     return out;
-}
-
-bool settle_brightness(Material& material, const CrossedCards& cards) {
-    Texture& color = material.base_color_texture;
-    if (!(color.scale.x > 1))
-        return false;
-    const double more = color.scale.x / cards.material.base_color_texture.scale.x;
-    color = texture_of(cards.picture, more);
-    material.alpha_texture.picture = color.picture;
-    material.base_color = glm::dvec3(color.picture->mean) * color.scale;
-    return true;
 }
 
 }  // namespace lodestone::cards

@@ -13,8 +13,8 @@
 namespace lodestone::cards {
 
 /// The triangles of all cards of one thing.
-/// Law: a quad for each side of three upright planes and a level one.
-inline constexpr size_t kCardTriangles = 16;
+/// Law: a quad for each side of three upright planes and two level ones.
+inline constexpr size_t kCardTriangles = 20;
 
 /// How cards are made.
 struct CardOptions {
@@ -32,10 +32,6 @@ struct CrossedCards {
     Material material;
     CardPicture picture;  // as it was before it was packed
 };
-
-/// Brings what the colors of these cards' material are multiplied with to at most 1, by a brighter
-/// picture, where white is white. False: it was so.
-bool settle_brightness(Material& material, const CrossedCards& cards);
 
 /// The bytes that the picture of a mesh's cards takes in a renderer's memory, before it is made; 0
 /// where there are none.

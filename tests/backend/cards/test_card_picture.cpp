@@ -72,8 +72,8 @@ TEST(CardPictureLayout, CardsLieBesideEachOtherWithClearTexelsBetweenAndFitWhatI
 TEST_F(CardPictures, ABoxCoversItsCardsInItsColor) {
     const CardPicture picture = cast(shapes::box({-1, -1, 0}, {1, 1, 2}),
                                      {models::colored("red", {0.5, 0.2, 0.1})}, {0, 0, 1});
-    ASSERT_EQ(picture.normals.size(), 4u);
-    for (size_t card = 0; card < 4; ++card)
+    ASSERT_EQ(picture.normals.size(), 5u);
+    for (size_t card = 0; card < 5; ++card)
         EXPECT_NEAR(covered(picture, card), 1, 0.01) << card;
     const cards::CardPatch& patch = picture.patches[0];
     const glm::vec4& texel =

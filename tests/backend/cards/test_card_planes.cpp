@@ -18,10 +18,10 @@ TEST(CardPlanes, AFlatSheetHasNone) {
     EXPECT_TRUE(cards::crossed_planes(shapes::quad(1, 1), glm::dvec3(0.0)).empty());
 }
 
-TEST(CardPlanes, ACubeHasThreeUprightOnesAroundItAndALevelOne) {
+TEST(CardPlanes, ACubeHasThreeUprightOnesAroundItAndTwoLevelOnes) {
     const Mesh cube = shapes::box({-1, -1, 0}, {1, 1, 4});
     const std::vector<CardPlane> planes = cards::crossed_planes(cube, {0, 0, 2});
-    ASSERT_EQ(planes.size(), 4u);
+    ASSERT_EQ(planes.size(), 5u);
     for (size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(planes[i].normal().z, 0, 1e-12);
         EXPECT_NEAR(planes[i].half_size.y, 2, 1e-6);
@@ -30,17 +30,24 @@ TEST(CardPlanes, ACubeHasThreeUprightOnesAroundItAndALevelOne) {
                     1e-6);
         EXPECT_NEAR(glm::length(planes[i].middle - glm::dvec3(0, 0, 2)), 0, 1e-6);
     }
-    EXPECT_NEAR(planes[3].normal().z, 1, 1e-12);
-    EXPECT_NEAR(planes[3].half_size.x, 1, 1e-6);
-    EXPECT_NEAR(planes[3].half_size.y, 1, 1e-6);
+    for (size_t i = 3; i < 5; ++i) {
+        EXPECT_FALSE(planes[i].upright());
+        EXPECT_NEAR(planes[i].normal().z, 1, 1e-12);
+        EXPECT_NEAR(planes[i].half_size.x, 1, 1e-6);
+        EXPECT_NEAR(planes[i].half_size.y, 1, 1e-6);
+        EXPECT_NEAR(planes[i].middle.z, i == 3 ? 1 : 3, 1e-6)
+            << "a quarter and three of the height";
+    }
 }
 
 TEST(CardPlanes, GoThroughTheGivenMiddleWhereMoreIsOnOneSide) {
     const std::vector<CardPlane> planes =
         cards::crossed_planes(shapes::box({-1, -1, 0}, {3, 1, 2}), {0.5, 0, 0.5});
-    ASSERT_EQ(planes.size(), 4u);
-    for (const CardPlane& plane : planes)
-        EXPECT_NEAR(glm::dot(glm::dvec3(0.5, 0, 0.5) - plane.middle, plane.normal()), 0, 1e-6);
+    ASSERT_EQ(planes.size(), 5u);
+    for (const CardPlane& plane : planes) {
+        const double off = glm::dot(glm::dvec3(0.5, 0, 0.5) - plane.middle, plane.normal());
+        EXPECT_NEAR(plane.upright() ? off : 0, 0, 1e-6);
+    }
     EXPECT_NEAR(planes[0].middle.x, 1, 1e-6);
     EXPECT_NEAR(planes[0].half_size.x, 2, 1e-6);
 }
@@ -51,6 +58,6 @@ TEST(CardPlanes, CornersThatAreNoNumbersDoNotCount) {
     mesh.positions.emplace_back(std::numeric_limits<float>::infinity(), 0, 0);
     mesh.triangles.emplace_back(0, 8, 9);
     const std::vector<CardPlane> planes = cards::crossed_planes(mesh, {0, 0, 2});
-    ASSERT_EQ(planes.size(), 4u);
+    ASSERT_EQ(planes.size(), 5u);
     EXPECT_NEAR(planes[0].half_size.x, 1, 1e-6);
 }

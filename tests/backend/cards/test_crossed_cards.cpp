@@ -56,11 +56,11 @@ TEST_F(CrossedCards, OfWhatIsAllCutAwayAreNone) {
     EXPECT_FALSE(made(ball, {foliage::leaf(clear)}));
 }
 
-TEST_F(CrossedCards, AreFourPlanesSeenFromBothSidesInOneMask) {
+TEST_F(CrossedCards, AreFivePlanesSeenFromBothSidesInOneMask) {
     const auto one = made(foliage::tree(100), leafy_);
     ASSERT_TRUE(one);
     EXPECT_NO_THROW(check(one->mesh));
-    EXPECT_EQ(one->mesh.triangles.size(), 16u);
+    EXPECT_EQ(one->mesh.triangles.size(), cards::kCardTriangles);
     EXPECT_TRUE(one->mesh.slots.empty());
     EXPECT_EQ(one->material.alpha_mode, AlphaMode::Clip);
     EXPECT_EQ(one->material.base_color_texture.picture, one->material.alpha_texture.picture);
@@ -88,30 +88,7 @@ TEST_F(CrossedCards, WhatWasAddedBesideTheirOutlineWasBlack) {
                                                foliage::leaf(foliage::left_half())});
     ASSERT_TRUE(one);
     for (const glm::vec4& texel : one->picture.texels) {
-        EXPECT_NEAR(texel.x, 0.1, 0.02);
-        EXPECT_NEAR(texel.y, 0.6, 0.05);
+        EXPECT_GT(texel.y, 0.4) << "as bright as the tree, nearly";
+        EXPECT_NEAR(texel.x / texel.y, 1.0 / 6, 0.02) << "and of its hue";
     }
-}
-
-TEST_F(CrossedCards, BrightenedBeyondWhiteHaveABrighterPictureThatFilesOfOthersCanSay) {
-    const auto one = made(foliage::tree(100), leafy_);
-    ASSERT_TRUE(one);
-    Material material = one->material;
-    material.base_color_texture.scale *= 1.5;
-    Material plain = material;
-    EXPECT_FALSE(cards::settle_brightness(plain, *one));
-    EXPECT_EQ(hash_of(plain), hash_of(material)) << "of 0.6 there is room for that";
-    material.base_color_texture.scale *= 1.4;
-    const glm::dvec3 wanted =
-        glm::dvec3(material.base_color_texture.picture->mean) * material.base_color_texture.scale;
-    EXPECT_TRUE(cards::settle_brightness(material, *one));
-    EXPECT_LE(material.base_color_texture.scale.x, 1);
-    EXPECT_EQ(material.base_color_texture.picture, material.alpha_texture.picture);
-    EXPECT_EQ(material.alpha_texture.scale.x, 1);
-    const glm::dvec3 mean =
-        glm::dvec3(material.base_color_texture.picture->mean) * material.base_color_texture.scale;
-    EXPECT_NEAR(mean.x, wanted.x, 0.02) << "red stays below white";
-    EXPECT_LE(mean.y, wanted.y) << "green is cut to it";
-    EXPECT_GT(mean.y, 0.75 * wanted.y);
-    EXPECT_EQ(material.base_color, mean) << "what viewports show";
 }

@@ -123,16 +123,11 @@ void compare_finely(StandInCandidate& candidate, std::span<const uint16_t> tinte
 
 void compare_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
                     FinestPictures& pictures, const Job& job) {
-    compare_to(pictures.of_crown(job), candidate, {}, finest, job);
-    come_to(candidate, CandidateState::Pictured);
-    candidate.viewed = true;
-}
-
-void measure_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
-                    FinestPictures& pictures, const Job& job) {
     const ray::SkinPtr skin = finest.skin_of(candidate.materials);
     candidate.error = finest.error_at(pictures.of_crown(job).of(candidate.mesh(), skin, job).error);
     candidate.max_error = candidate.error;
+    come_to(candidate, CandidateState::Pictured);
+    candidate.viewed = true;
 }
 
 bool looks_alike(const Mesh& drawn, std::span<const Material> materials, double error,

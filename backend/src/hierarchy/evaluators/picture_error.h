@@ -63,11 +63,9 @@ bool agrees_everywhere(const StandInCandidate& candidate, const MeasuredFinest& 
 void compare_finely(StandInCandidate& candidate, std::span<const uint16_t> tinted,
                     const MeasuredFinest& finest, FinestPictures& pictures, const Job& job);
 
-/// The same by pictures of a crown: of cards, whose points lie anywhere behind what they show.
+/// Fills the errors of cards, whose points lie anywhere behind what they show, by pictures of a crown
+/// in the colors that they have: Pictured.
 void compare_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
-                    FinestPictures& pictures, const Job& job);
-/// Fills the errors of a Pictured one again by pictures of a crown, in the colors that it has.
-void measure_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
                     FinestPictures& pictures, const Job& job);
 
 /// Whether what is drawn of a group's children is about as bright as the finest, and looks like it

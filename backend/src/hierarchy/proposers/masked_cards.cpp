@@ -46,8 +46,6 @@ void propose_cards(ProposalRound& round) {
     candidate.materials = {made->material};
     candidate.means = {finest.attributes.shares};
     compare_crowns(candidate, finest, round.pictures, round.job);
-    if (cards::settle_brightness(candidate.materials[0], *made))
-        measure_crowns(candidate, finest, round.pictures, round.job);
     round.candidates.push_back(std::move(candidate));
 }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cube views: the directions from which pictures of a thing are taken, and the frames of these.
+// Cube views: the directions from which pictures of a thing are taken and lit, and the frames of these.
 #pragma once
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
 #include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <vector>
 
 namespace lodestone::measure {
@@ -20,6 +22,20 @@ inline std::vector<glm::dvec3> cube_directions() {
             out.push_back(glm::normalize(along));
     }
     return out;
+}
+
+/// The unit direction of that number of any many that fill the half sphere above evenly: the sequence
+/// R2 (Roberts 2018).
+inline glm::dvec3 sky_direction(size_t number) {
+    // Law: 1 / g, where g^3 = g + 1.
+    constexpr double kFirst = 0.7548776662466927;
+    // Law: 1 / g^2.
+    constexpr double kSecond = 0.5698402909980532;
+    const double n = static_cast<double>(number) + 0.5;
+    const double z = std::fmod(kFirst * n, 1.0);
+    const double turn = 2 * std::numbers::pi * std::fmod(kSecond * n, 1.0);
+    const double across = std::sqrt(1 - z * z);
+    return {across * std::cos(turn), across * std::sin(turn), z};
 }
 
 /// The frame of a picture that is seen from the unit direction `towards`. Its columns: right, up,

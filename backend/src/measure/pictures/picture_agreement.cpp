@@ -42,11 +42,12 @@ struct PictureView {
 
     PictureView(const glm::dvec3& towards, size_t number, PictureViews views) {
         frame = picture_frame(towards);
-        // The suns stand around the views by the golden angle: each view has its own.
+        // The suns stand around the views by the golden angle: each view has its own. Those of crowns
+        // fill the half sphere above: against the light a crown has that of leaves that face aside.
         const double turn = kGoldenAngle * static_cast<double>(number);
-        sun = glm::normalize(towards + std::cos(turn) * frame[0] + std::sin(turn) * frame[1]);
-        if (views == PictureViews::OfCrowns)
-            sun.z = std::abs(sun.z);
+        sun = views == PictureViews::OfCrowns
+                  ? sky_direction(number)
+                  : glm::normalize(towards + std::cos(turn) * frame[0] + std::sin(turn) * frame[1]);
     }
 };
 

@@ -199,7 +199,7 @@ TEST_F(StandInProposers, ATreeHasCardsWhichPicturesMeasure) {
     const StandInCandidate& cards = made["cards"][0];
     EXPECT_EQ(cards.state, CandidateState::Pictured);
     EXPECT_TRUE(cards.viewed) << "points of cards are not where those of leaves are";
-    EXPECT_EQ(cards.mesh().triangles.size(), 16u);
+    EXPECT_EQ(cards.mesh().triangles.size(), 20u);
     ASSERT_EQ(cards.materials.size(), 1u);
     EXPECT_LT(cards.error, finest_->size) << "in pictures they look like the tree";
     const measure::AgreementReference& crown = pictures_->of_crown(job_);
