@@ -18,7 +18,7 @@ namespace lodestone::povray {
 
 /// The beginning of the file that keeps it.
 /// Law: another one is another format.
-inline constexpr std::string_view kSkyVersion = "LDSSKY03";
+inline constexpr std::string_view kSkyVersion = "LDSSKY04";
 
 /// The choices for sky occlusion.
 struct SkyOcclusionOptions {
@@ -52,11 +52,12 @@ struct SkyOcclusionOptions {
 /// that is placed once has the shares of its corners as it stands there. What is placed more often
 /// has those of its own shape, times one of at most four grades of what is around its placement,
 /// which changes evenly over the thing. Boxes and ellipsoids have the mean of their sides, or, where
-/// they are large in the picture, the light of each. Levels have the light of the outermost places near them
-/// of their finest level, and what stands in for a group that of all below it. What moves in an
-/// animation hides the sky from itself alone, so that no frame needs rays anew; where a ground lies
-/// below it, it sees no sky there. In a picture alone it rests, what is opaque has the light of the
-/// side that the camera sees, and the largest copies that of where they stand.
+/// they are large in the picture, the light of each. Levels have the light of the outermost places
+/// near them of their finest level, crossed cards that of what they show, and what stands in for a
+/// group that of all below it. What moves in an animation hides the sky from itself alone, so that
+/// no frame needs rays anew; where a ground lies below it, it sees no sky there. In a picture alone
+/// it rests, what is opaque has the light of the side that the camera sees, and the largest copies
+/// that of where they stand.
 class SkyOcclusion {
 public:
     /// Where rays cannot be cast or there is too much, nothing is occluded, and a problem says so.

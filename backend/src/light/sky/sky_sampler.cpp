@@ -267,9 +267,35 @@ SkySampler::SkyPlace SkySampler::place(const Mesh& mesh, size_t triangle,
     const glm::dvec2 weights = measure::uniform_in_triangle(out.point[0], out.point[1]);
     out.weights = {1 - weights.x - weights.y, weights.x, weights.y};
     face_of(mesh, triangle, placed, normal_map_, out.weights, out);
-    if (request_.original != nullptr)
-        move_to_original(!request_.surface.opaque_slot(mesh.slot(triangle)), out, near);
+    if (request_.original == nullptr)
+        return out;
+    const uint16_t slot = mesh.slot(triangle);
+    if (!shows_own_picture(slot) || !move_to_pictured(out))
+        move_to_original(!request_.surface.opaque_slot(slot), out, near);
     return out;
+}
+
+bool SkySampler::shows_own_picture(uint16_t slot) const {
+    const std::vector<Hash>& masks = request_.surface.masks;
+    const std::vector<Hash>& known = request_.original->masks;
+    return slot < masks.size() && masks[slot] != 0 &&
+           std::find(known.begin(), known.end(), masks[slot]) == known.end();
+}
+
+bool SkySampler::move_to_pictured(SkyPlace& place) const {
+    const SkySurface& original = *request_.original;
+    // Law: from this far outside of it, whatever the place, all of the original is before.
+    const double far = 2 * size_;
+    const ray::RayHit hit =
+        original.scene->first_hit(place.at + far * place.face, -place.face, 2 * far);
+    const std::optional<PlacedTriangle> there =
+        hit.hit ? placed(*original.mesh, hit.triangle) : std::nullopt;
+    if (!there)
+        return false;
+    const bool flipped = glm::dot(there->face, place.face) < 0;
+    face_of(*original.mesh, hit.triangle, flipped ? there->back() : *there, normal_map_,
+            {1 - hit.u - hit.v, hit.u, hit.v}, place);
+    return true;
 }
 
 void SkySampler::move_to_original(bool both, SkyPlace& place, uint32_t& near) const {

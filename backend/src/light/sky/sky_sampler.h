@@ -207,6 +207,12 @@ private:
                         SkyPlace& out);
     /// Moves a place to the original.
     void move_to_original(bool both, SkyPlace& place, uint32_t& near) const;
+    /// Whether a slot of a level is cut out of a picture that the original does not show, as crossed
+    /// cards are: it shows what is seen of the original along its normal.
+    bool shows_own_picture(uint16_t slot) const;
+    /// Moves a place to the first one of the original that is seen from outside along the normal.
+    /// False: there is none.
+    bool move_to_pictured(SkyPlace& place) const;
     /// Moves a place to the outermost face of the original, within the level's error, that faces
     /// alike: that is what the level shows there. False: there is none.
     bool move_to_outermost(SkyPlace& place) const;
