@@ -28,8 +28,9 @@ public:
     /// Metres, in the worst of the pictures: the distance that no more than one pixel in a thousand
     /// exceeds, or one in all, from what it shows of the finest to the nearest point of the
     /// stand-in, and if both ways, from what it shows of the stand-in to the nearest point of the
-    /// finest, which takes several times as long. What is at most `near` counts as near; where all is, the result is `near` or less. The bits are the
-    /// same on any number of threads. Throws Error: Cancelled.
+    /// finest, which takes several times as long. What is at most `near` counts as near; where all
+    /// is, the result is `near` or less. The bits are the same on any number of threads. Throws
+    /// Error: Cancelled.
     double worst(const ray::MeshScene& stand_in, ViewedWay ways, double near,
                  const Job& job = {}) const;
 
