@@ -18,7 +18,7 @@ namespace lodestone::povray {
 
 /// The beginning of the file that keeps it.
 /// Law: another one is another format.
-inline constexpr std::string_view kSkyVersion = "LDSSKY04";
+inline constexpr std::string_view kSkyVersion = "LDSSKY05";
 
 /// The choices for sky occlusion.
 struct SkyOcclusionOptions {

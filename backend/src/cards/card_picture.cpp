@@ -195,12 +195,10 @@ void fill_clear(CardPicture& picture) {
     }
 }
 
-Texture texture_of(const CardPicture& picture, double brighter) {
-    const auto more = static_cast<float>(brighter);
+Texture texture_of(const CardPicture& picture) {
     float brightest = 0;
     for (const glm::vec4& texel : picture.texels)
         brightest = std::max({brightest, texel.x, texel.y, texel.z});
-    brightest *= more;
     brightest = brightest > 0 ? std::min(brightest, 1.0F) : 1.0F;
     image::Image image;
     image.width = picture.width;
@@ -208,8 +206,7 @@ Texture texture_of(const CardPicture& picture, double brighter) {
     image.pixels.reserve(4 * picture.texels.size());
     for (const glm::vec4& texel : picture.texels) {
         for (int i = 0; i < 3; ++i)
-            image.pixels.push_back(
-                encode_srgb(std::clamp(more * texel[i] / brightest, 0.0F, 1.0F)));
+            image.pixels.push_back(encode_srgb(std::clamp(texel[i] / brightest, 0.0F, 1.0F)));
         image.pixels.push_back(texel.w);
     }
     Texture out;

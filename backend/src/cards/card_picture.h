@@ -69,8 +69,7 @@ void cast_picture(CardPicture& picture, std::span<const CardPlane> planes, const
 void fill_clear(CardPicture& picture);
 
 /// The texture that shows the picture's colors: a PNG of 8 bits whose brightest channel is 1, and
-/// what it is to be multiplied with, at most 1: files of others cannot say more. Colors are made
-/// `brighter` times as bright, but none brighter than white.
-Texture texture_of(const CardPicture& picture, double brighter = 1);
+/// what it is to be multiplied with, at most 1: files of others cannot say more.
+Texture texture_of(const CardPicture& picture);
 
 }  // namespace lodestone::cards

@@ -23,7 +23,8 @@ struct CardPlane {
 };
 
 /// Upright planes through the vertical line through `middle`, turned by equal angles, and two
-/// level ones at a quarter and three quarters of the height, the last. Empty where the mesh has no extent in one of these.
+/// level ones at a quarter and three quarters of the height, the last. Empty where the mesh has no
+/// extent in one of these.
 std::vector<CardPlane> crossed_planes(const Mesh& mesh, const glm::dvec3& middle);
 
 }  // namespace lodestone::cards

@@ -112,7 +112,7 @@ void fit_texels(CardPicture& picture, std::vector<FitViews>& sets, const Job& jo
 /// Adds a number to all shares of a plane that are not 0, one plane after another, so that the cards
 /// cover as much as the mesh in the mean of the views that face the plane.
 void level_coverage(CardPicture& picture, std::span<const CardPlane> planes,
-                    const std::vector<CardView>& views) {
+                    const std::vector<CardView>& views, const Job& job) {
     // The most that is added.
     // Taste: a larger value lets cards grow over what they were cast from.
     constexpr float kMost = 0.5F;
@@ -141,6 +141,7 @@ void level_coverage(CardPicture& picture, std::span<const CardPlane> planes,
             float low = -kMost;
             float high = kMost;
             for (int i = 0; i < kHalvings; ++i) {
+                job.check();
                 const float middle = 0.5F * (low + high);
                 (sum_with(middle) > 0 ? high : low) = middle;
             }
@@ -171,7 +172,8 @@ void fit_coverage(CardPicture& picture, std::span<const CardPlane> planes,
     // Texels follow the samples that they were fitted to; others tell what that adds up to.
     level_coverage(picture, planes,
                    card_views(picture, planes, scene, {directions.count, 0, 1, kAside},
-                              measure::scramble(seed + kSets), job));
+                              measure::scramble(seed + kSets), job),
+                   job);
 }
 
 }  // namespace lodestone::cards

@@ -70,9 +70,10 @@ std::optional<CrossedCards> crossed_cards(const Mesh& mesh, const ray::MeshScene
     if (std::none_of(picture.texels.begin(), picture.texels.end(),
                      [](const glm::vec4& texel) { return texel.w > 0; }))
         return std::nullopt;
-    fill_clear(picture);  // first: the fit covers texels that no ray has hit
+    fill_clear(picture);  // before the fit, which covers texels that no ray has hit
     fit_coverage(picture, planes, scene, options.seed, job);
     match_light(picture, planes, mesh, scene, skin, options.seed, job);
+    fill_clear(picture);  // again: what is around changed its color
     const Texture color = texture_of(picture);
     Texture alpha = color;
     alpha.channel = TextureChannel::Alpha;

@@ -39,8 +39,10 @@ protected:
         float out = 0;
         const cards::CardPatch& patch = picture.patches[plane];
         for (int row = patch.top; row < patch.top + patch.height; ++row) {
-            for (int column = patch.left; column < patch.left + patch.width; ++column)
-                out = std::max(out, picture.texels[picture.index(column, row)].y);
+            for (int column = patch.left; column < patch.left + patch.width; ++column) {
+                const glm::vec4& texel = picture.texels[picture.index(column, row)];
+                out = texel.w > 0 ? std::max(out, texel.y) : out;
+            }
         }
         return out;
     }

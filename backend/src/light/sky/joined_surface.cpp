@@ -47,9 +47,12 @@ std::optional<SkySurface> joined_surface(const SkySurfaces& surfaces,
     if (triangles == 0 || !to_own.finite())
         return {};
     Mesh mesh;
-    for (const SkyOccluder& occluder : occluders)
-        join(surfaces.of(*occluder.representation), to_own * occluder.world, mesh);
     SkySurface out;
+    for (const SkyOccluder& occluder : occluders) {
+        const SkySurface& own = surfaces.of(*occluder.representation);
+        join(own, to_own * occluder.world, mesh);
+        out.masks.insert(out.masks.end(), own.masks.begin(), own.masks.end());
+    }
     out.see_through = {0, 1};
     out.scene = std::make_shared<const ray::MeshScene>(mesh);
     out.mesh = std::make_shared<const Mesh>(std::move(mesh));

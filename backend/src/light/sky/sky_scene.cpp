@@ -65,9 +65,9 @@ SkySurface SkySurfaces::made(const Representation& representation) {
         materials.push_back(material != nullptr ? clear_material(*material) : Material{});
         out.see_through.push_back(material != nullptr && lets_light_through(*material) ? 1 : 0);
         out.materials.push_back(index);
-        out.masks.push_back(material != nullptr && material->alpha_texture
-                                ? material->alpha_texture.picture->hash
-                                : Hash{0});
+        const bool masked = material != nullptr && lets_light_through(*material);
+        out.masks.push_back(
+            masked && material->alpha_texture ? material->alpha_texture.picture->hash : Hash{0});
     }
     const bool any = std::find(out.see_through.begin(), out.see_through.end(), uint8_t{1}) !=
                      out.see_through.end();

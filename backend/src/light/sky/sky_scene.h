@@ -34,7 +34,7 @@ struct SkySurface {
     std::shared_ptr<const ray::MeshScene> scene;
     std::vector<uint8_t> see_through;  // by slot: light goes through some or all of it
     std::vector<uint32_t> materials;   // by slot, of the model
-    std::vector<Hash> masks;           // by slot, the picture that says where it is; 0: none does
+    std::vector<Hash> masks;           // by slot (joined: of all), the picture of its mask; 0: none
     std::vector<double> areas;         // of each triangle and all before it
 
     double area() const { return areas.empty() ? 0 : areas.back(); }

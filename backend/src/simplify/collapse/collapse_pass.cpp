@@ -182,7 +182,7 @@ public:
         if (effort_ == CollapseEffort::Careful && gone_ == 0) {
             // No edge within the limit can be collapsed: parts go before dearer edges do.
             limit_ = kImpossible - 1;
-            r_.parts_.locate(r_.mesh_, cost_of_key(limit_), next_part_);
+            r_.parts_.locate(r_.mesh_, cost_of_key(limit_), next_part_, job);
             const std::vector<uint32_t> all = rounds_of(chunks, removable_, limit_, want_);
             if (all.size() > 1)
                 remove_parts_below(all[all.size() - 2] << kKeyShift);
@@ -344,7 +344,7 @@ size_t CollapseReducer::pass(size_t target, CollapseEffort effort, const Job& jo
         loops_ = !has_tunnels(mesh_, adjacency_);
     }
     const bool usual = effort == CollapseEffort::Careful && reach_ == 1;
-    parts_.locate(mesh_, cost_of_key(limit));
+    parts_.locate(mesh_, cost_of_key(limit), 0, job);
     edges_.take(mesh_, adjacency_, effort, limit, usual ? kHeld : kMostHeld, job);
     CollapseBatch(*this, effort, start, want, limit).run(job);
     if (effort >= CollapseEffort::Topology)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "simplify/collapse/mesh_parts.h"
 
+#include "base/parallel.h"
 #include "simplify/collapse/part_distances.h"
 
 #include <algorithm>
@@ -13,6 +14,10 @@ namespace {
 /// what is left without it.
 /// Law: as many as there are for each vertex; a collapse moves about that much.
 constexpr double kTakenOff = 2;
+
+/// Parts after which a job is asked whether it goes on.
+/// Taste: some milliseconds.
+constexpr size_t kCheckEvery = 1024;
 
 bool cheaper(const CollapsePart& a, const CollapsePart& b) {
     return a.cost < b.cost;
@@ -77,28 +82,36 @@ void CollapseParts::count(const CollapseMesh& mesh) {
     std::erase_if(parts_, [](const CollapsePart& part) { return part.triangles == 0; });
 }
 
-void CollapseParts::locate(const CollapseMesh& mesh, double below, size_t from) {
+void CollapseParts::locate(const CollapseMesh& mesh, double below, size_t from, const Job& job) {
+    // Parts up to so many times dearer are located with them: making the distances takes longer.
+    // Taste: a larger value locates parts that are never near their turn.
+    constexpr double kAhead = 8;
     const auto first = parts_.begin() + static_cast<ptrdiff_t>(from);
-    const auto end = std::partition_point(
-        first, parts_.end(), [&](const CollapsePart& part) { return part.cost < below; });
-    if (std::all_of(first, end, [](const CollapsePart& part) { return part.located; }))
+    const auto end_below = [&](double cost) {
+        return std::partition_point(first, parts_.end(),
+                                    [&](const CollapsePart& part) { return part.cost < cost; });
+    };
+    if (std::all_of(first, end_below(below), [](const CollapsePart& part) { return part.located; }))
         return;
-    std::vector<uint32_t> ranks(mesh.part_count, static_cast<uint32_t>(parts_.size()));
-    for (uint32_t i = 0; i < parts_.size(); ++i)
-        ranks[parts_[i].part] = i;
-    const PartDistances distances(mesh, ranks);
     double area = 0;
     for (size_t i = 0; i < mesh.triangles.size(); ++i)
         area += mesh.dead(i) ? 0 : glm::length(glm::dvec3(mesh.facets[i]));
     const double weight = kTakenOff * area / static_cast<double>(mesh.live);
     if (!(weight > 0))
         return;
-    for (auto part = first; part != end; ++part) {
-        if (std::exchange(part->located, true))
-            continue;
-        const auto rank = static_cast<uint32_t>(part - parts_.begin());
-        part->cost = weight * distances.farthest(rank, part->cost / weight);
-    }
+    std::vector<uint32_t> ranks(mesh.part_count, static_cast<uint32_t>(parts_.size()));
+    for (uint32_t i = 0; i < parts_.size(); ++i)
+        ranks[parts_[i].part] = i;
+    const PartDistances distances(mesh, ranks);
+    const auto end = static_cast<size_t>(end_below(kAhead * below) - parts_.begin());
+    parallel_for(end - from, [&](size_t i) {
+        if (i % kCheckEvery == 0)
+            job.check();
+        CollapsePart& part = parts_[from + i];
+        if (!std::exchange(part.located, true))
+            part.cost =
+                weight * distances.farthest(static_cast<uint32_t>(from + i), part.cost / weight);
+    });
     std::stable_sort(first, parts_.end(), cheaper);
 }
 

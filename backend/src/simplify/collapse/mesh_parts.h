@@ -24,10 +24,10 @@ public:
     void count(const CollapseMesh& mesh);
     /// Makes the costs of the parts, from the removable one with number `from` on, count how far a
     /// part lies from what is left without it and without all cheaper ones: what lies on another
-    /// part may go, what stands alone stays longer. Only parts that are cheaper than `below` are
-    /// located, each once since they were measured. cost: n log n of the live triangles where one
+    /// part may go, what stands alone stays longer. Parts that are cheaper than `below`, and some
+    /// dearer ones, are located, each once since they were measured. cost: n log n of the live triangles where one
     /// is.
-    void locate(const CollapseMesh& mesh, double below, size_t from = 0);
+    void locate(const CollapseMesh& mesh, double below, size_t from, const Job& job);
 
     /// The parts, cheapest first, without the dearest one (which always stays).
     const std::vector<CollapsePart>& removable() const { return parts_; }

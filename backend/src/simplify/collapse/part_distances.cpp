@@ -11,10 +11,6 @@
 namespace lodestone::simplify {
 namespace {
 
-/// The corners of a part that are looked at.
-/// Taste: with three and with sixteen distances of simplified meshes are as good; more take longer.
-constexpr size_t kMostCorners = 3;
-
 /// The live triangles of a mesh, with all of its points.
 Mesh live_triangles(const CollapseMesh& mesh) {
     Mesh out;
@@ -65,22 +61,30 @@ double PartDistances::farthest(uint32_t rank, double least) const {
     const std::span<const uint32_t> own =
         std::span(order_).subspan(first_[rank], first_[rank + 1] - first_[rank]);
     Box3 box;
+    std::array<uint32_t, 6> ends{};  // lowest and highest of each axis
     for (const uint32_t triangle : own) {
-        for (int corner = 0; corner < 3; ++corner)
-            box.add(glm::dvec3(live_.positions[live_.triangles[triangle][corner]]));
+        for (int corner = 0; corner < 3; ++corner) {
+            const uint32_t vertex = live_.triangles[triangle][corner];
+            const glm::dvec3 at(live_.positions[vertex]);
+            for (int axis = 0; axis < 3; ++axis) {
+                if (at[axis] < box.low[axis])
+                    ends[2 * static_cast<size_t>(axis)] = vertex;
+                if (at[axis] > box.high[axis])
+                    ends[2 * static_cast<size_t>(axis) + 1] = vertex;
+            }
+            box.add(at);
+        }
     }
     const double most = glm::dot(box.size(), box.size());
     double found = least;
-    const size_t corners = 3 * own.size();
-    const size_t step = std::max<size_t>(1, (corners + kMostCorners - 1) / kMostCorners);
-    for (size_t i = 0; i < corners && found < most; i += step) {
-        const Triangle& t = live_.triangles[own[i / 3]];
-        found = std::max(found, nearest(live_.positions[t[static_cast<int>(i % 3)]], rank, found));
+    for (auto end = ends.begin(); end != ends.end() && found < most; ++end) {
+        if (std::find(ends.begin(), end, *end) == end)
+            found = std::max(found, nearest(live_.positions[*end], rank, {found, most}));
     }
     return std::max(least, std::min(most, found));
 }
 
-double PartDistances::nearest(const glm::vec3& place, uint32_t rank, double enough) const {
+double PartDistances::nearest(const glm::vec3& place, uint32_t rank, const Limits& limits) const {
     struct TreePart {
         double square;
         uint32_t part;
@@ -91,12 +95,13 @@ double PartDistances::nearest(const glm::vec3& place, uint32_t rank, double enou
     std::array<TreePart, 64> left;
     size_t count = 0;
     geometry::TriangleSpot best;
+    best.square = static_cast<float>(limits.most);
     const auto push = [&](const TreePart& half) {
         if (highest_[half.part] > rank && half.square < best.square)
             left[count++] = half;
     };
     push({square_to(parts[0].box, from), 0});
-    while (count > 0 && best.square > enough) {
+    while (count > 0 && best.square > limits.enough) {
         const TreePart next = left[--count];
         if (next.square >= best.square)
             continue;

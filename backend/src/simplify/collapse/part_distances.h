@@ -13,17 +13,22 @@ public:
     /// `ranks`: by part.
     PartDistances(const CollapseMesh& mesh, std::span<const uint32_t> ranks);
 
-    /// The squared distance from the farthest corner of the part with a rank to the nearest triangle
-    /// of a higher rank, in units of the mesh, but no more than the part's diagonal: what is smaller
-    /// than an error is not missed, however far off it is. `least` where it is
-    /// no more than that, which takes less time. Of a part of many corners some are looked
-    /// at. cost: log n for each of them, if something is near.
+    /// The squared distance from the farthest of the corners at which the part with a rank touches
+    /// its box to the nearest triangle of a higher rank, in units of the mesh, but no more than the
+    /// box's diagonal: what is smaller than an error is not missed, however far off it is. `least`
+    /// where it is no more than that, which takes less time. cost: log n for each corner, if
+    /// something is near.
     double farthest(uint32_t rank, double least) const;
 
 private:
-    /// The squared distance from a place to the nearest triangle above a rank, if it is below
-    /// `best`; it ends as soon as one is within `enough`.
-    double nearest(const glm::vec3& place, uint32_t rank, double enough) const;
+    /// Squared distances between which the nearest triangle is looked for.
+    struct Limits {
+        double enough;
+        double most;
+    };
+    /// The squared distance from a place to the nearest triangle above a rank, `most` at most; it
+    /// ends as soon as one is within `enough`.
+    double nearest(const glm::vec3& place, uint32_t rank, const Limits& limits) const;
 
     Mesh live_;
     std::vector<uint32_t> ranks_;  // of the live triangles

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Guards the sky on crossed cards, which show what is seen of a crown and lie inside of it.
 #include "backend/light/sky/sky_places.h"
+#include "light/sky/joined_surface.h"
 #include "scenes/leaf_cards.h"
 
 using namespace lodestone;
@@ -23,8 +24,9 @@ protected:
             position.z = height;
         return mesh;
     }
-    /// The mean share of a level that is a sheet in the middle of a pile of leaves.
-    double mean_in_pile(const PicturePtr& leaves, const PicturePtr& of_level) {
+    /// The mean share of a level that is a sheet in the middle of a pile of leaves, which may be a
+    /// group's, joined.
+    double mean_in_pile(const PicturePtr& leaves, const PicturePtr& of_level, bool joined = false) {
         Mesh pile = sheet(-0.2F);
         append(pile, sheet(0), {});
         append(pile, sheet(0.2F), {});
@@ -34,7 +36,9 @@ protected:
         const std::vector<const Representation*> more{&finest(level)};
         place.surfaces.add(more, {});
         SkyRequest request{place.surfaces.of(finest(level)), {}, &*place.scene, 0.02, 64, 0};
-        request.original = &place.surfaces.of(finest(original));
+        const std::optional<SkySurface> group =
+            joined_surface(place.surfaces, place.occluders, Affine{}, 1000);
+        request.original = joined ? &group.value() : &place.surfaces.of(finest(original));
         return sky_shares(request, {}).mean;
     }
 };
@@ -44,6 +48,12 @@ protected:
 TEST_F(SharesOfCards, OfALeafThatStayedAreThoseOfTheLeaf) {
     const PicturePtr leaves = disc(32);
     EXPECT_LT(mean_in_pile(leaves, leaves), 0.45) << "between two others";
+}
+
+TEST_F(SharesOfCards, PrunedLeavesOfAGroupHadTheSkyOfItsTop) {
+    const PicturePtr leaves = disc(32);
+    EXPECT_LT(mean_in_pile(leaves, leaves, true), 0.45) << "between two others";
+    EXPECT_GT(mean_in_pile(leaves, disc(48), true), 0.7) << "a card's";
 }
 
 TEST_F(SharesOfCards, InsideOfACrownWereThoseOfItsInside) {

@@ -64,6 +64,29 @@ TEST(PartDistances, APartIsNoFartherThanItIsLarge) {
     EXPECT_NEAR(distances_of(mesh).at(0), std::sqrt(2.0), 1e-6);
 }
 
+TEST(PartDistances, TheTipOfAMastOnARoofIsLookedAt) {
+    Mesh mesh;
+    add_triangle(mesh, {-5, -5, 0}, 100);  // the roof
+    const auto first = static_cast<uint32_t>(mesh.positions.size());
+    constexpr uint32_t kSteps = 100;
+    for (uint32_t i = 0; i <= kSteps; ++i) {
+        mesh.positions.emplace_back(0, 0, 0.1F * static_cast<float>(i));
+        mesh.positions.emplace_back(0.1F, 0, 0.1F * static_cast<float>(i));
+    }
+    for (uint32_t i = 0; i < kSteps; ++i)
+        mesh.triangles.emplace_back(first + 2 * i, first + 2 * i + 1, first + 2 * i + 2);
+    for (uint32_t i = 0; i < kSteps; ++i)
+        mesh.triangles.emplace_back(first + 2 * i + 1, first + 2 * i + 3, first + 2 * i + 2);
+    const CollapseMesh opened = open_collapse_mesh(mesh, Job());
+    ASSERT_EQ(opened.part_count, 2U);
+    std::vector<uint32_t> ranks(2, 0);
+    for (const Triangle& t : opened.triangles) {
+        if (opened.sources[opened.ids[t.x]] < 3)
+            ranks[opened.parts[t.x]] = 1;
+    }
+    EXPECT_NEAR(opened.scale * std::sqrt(PartDistances(opened, ranks).farthest(0, 0)), 10, 1e-4);
+}
+
 TEST(PartDistances, AtLeastWhatIsGiven) {
     Mesh mesh;
     add_triangle(mesh, {0, 0, 0});
