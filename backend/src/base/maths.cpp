@@ -153,9 +153,7 @@ Bound transformed(const Bound& bound, const Affine& transform, double stretch) {
 
 double distance(const Bound& bound, const glm::dvec3& point) {
     const double sphere = glm::length(point - bound.center) - bound.radius;
-    const glm::dvec3 outside =
-        glm::max(glm::max(bound.box.low - point, point - bound.box.high), glm::dvec3(0.0));
-    return std::max({0.0, sphere, glm::length(outside)});
+    return std::max({0.0, sphere, glm::length(bound.box.beyond(point))});
 }
 
 }  // namespace lodestone

@@ -100,6 +100,11 @@ struct Box3 {
         return glm::all(glm::lessThanEqual(low, point)) &&
                glm::all(glm::lessThanEqual(point, high));
     }
+    /// How far a point lies outside of the range of each axis; 0 where it is within. Its length is
+    /// the distance.
+    glm::dvec3 beyond(const glm::dvec3& point) const {
+        return glm::max(glm::max(low - point, point - high), glm::dvec3(0.0));
+    }
     glm::dvec3 center() const { return 0.5 * (low + high); }
     glm::dvec3 size() const { return empty() ? glm::dvec3(0.0) : high - low; }
     /// 0, 1 or 2; of axes that are as long the first.

@@ -23,9 +23,6 @@ constexpr size_t kLightRow = 40;
 // Suns of each view.
 // Taste: more know better what each side of a crown shows, in time in proportion.
 constexpr size_t kSuns = 8;
-// The share of the sky in the light on a surface that faces the sun.
-// Taste: that of measure::AgreementReference.
-constexpr double kSky = 0.25;
 
 /// The suns of a view, of all that fill the half sphere above evenly.
 std::vector<glm::dvec3> suns_of(size_t view) {
@@ -35,14 +32,15 @@ std::vector<glm::dvec3> suns_of(size_t view) {
     return out;
 }
 
-/// The light that a view shows under each of its suns: sums by color over all rays, and the rays that
-/// meet anything.
+/// The light that a view shows under each of its suns: sums by color over all rays, and the rays
+/// that meet anything.
 struct ShownLight {
     std::vector<glm::dvec3> light = std::vector<glm::dvec3>(kSuns, glm::dvec3(0.0));
     double rays = 0;
 
     void add(size_t sun, const glm::dvec3& color, double facing) {
-        light[sun] += (kSky + (1 - kSky) * std::max(facing, 0.0)) * color;
+        light[sun] +=
+            (measure::kSkyShare + (1 - measure::kSkyShare) * std::max(facing, 0.0)) * color;
     }
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CardViews: what rays of orthographic pictures from above the horizon meet of a thing and its cards.
+// CardViews: what rays of orthographic pictures from above the horizon meet of a thing and its
+// cards.
 #pragma once
 
 #include "cards/card_picture.h"
@@ -52,8 +53,8 @@ struct CardView {
     double too_much(const CardPicture& picture) const;
 };
 
-/// Directions that fill the half sphere above evenly (a spiral by the golden angle from the horizon to
-/// straight above): of `count` those from number `first` on, each `step`-th. `turn`: radians around
+/// Directions that fill the half sphere above evenly (a spiral by the golden angle from the horizon
+/// to straight above): of `count` those from number `first` on, each `step`-th. `turn`: radians around
 /// the vertical.
 struct SkyDirections {
     size_t count = 26;

@@ -109,8 +109,8 @@ void fit_texels(CardPicture& picture, std::vector<FitViews>& sets, const Job& jo
     }
 }
 
-/// Adds a number to all shares of a plane that are not 0, one plane after another, so that the cards
-/// cover as much as the mesh in the mean of the views that face the plane.
+/// Adds a number to all shares of a plane that are not 0, one plane after another, so that the
+/// cards cover as much as the mesh in the mean of the views that face the plane.
 void level_coverage(CardPicture& picture, std::span<const CardPlane> planes,
                     const std::vector<CardView>& views, const Job& job) {
     // The most that is added.

@@ -172,6 +172,7 @@ bool is_same(const Payload& a, const Payload& b) {
                                              const Held& other = std::get<Held>(b);
                                              if constexpr (std::is_same_v<Held, Primitive>)
                                                  return one.center == other.center &&
+                                                        one.axes == other.axes &&
                                                         one.half_size == other.half_size;
                                              else
                                                  return one == other;

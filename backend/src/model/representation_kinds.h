@@ -157,8 +157,8 @@ uint64_t solid_triangles(Kind kind, const Payload& payload);
 /// The same elsewhere; `place` turns and moves.
 Payload moved(Kind kind, const Payload& payload, const Affine& place);
 
-/// Whether two payloads are one: the same mesh in memory, a primitive of the same size at the same
-/// place.
+/// Whether two payloads are one: the same mesh in memory, a primitive of the same size and axes
+/// at the same place.
 bool is_same(const Payload& a, const Payload& b);
 
 }  // namespace lodestone

@@ -29,7 +29,8 @@ struct SimplifyOptions {
     /// reaches coarse targets with less error but may fold thin parts over.
     double max_turn = 70;
     /// Removing a separate part of the mesh costs at least this many times what squeezing it to a
-    /// point would; one that stands alone costs more. A larger value keeps screws and leaves longer, at the cost of the large parts' shape.
+    /// point would; one that stands alone costs more. A larger value keeps screws and leaves
+    /// longer, at the cost of the large parts' shape.
     double part_weight = 4;
     /// Every part, hole, handle and border stays, and no edge becomes non-manifold. Targets that
     /// this does not allow are missed. Otherwise the small ones close or vanish where a target

@@ -63,8 +63,8 @@ bool agrees_everywhere(const StandInCandidate& candidate, const MeasuredFinest& 
 void compare_finely(StandInCandidate& candidate, std::span<const uint16_t> tinted,
                     const MeasuredFinest& finest, FinestPictures& pictures, const Job& job);
 
-/// Fills the errors of cards, whose points lie anywhere behind what they show, by pictures of a crown
-/// in the colors that they have: Pictured.
+/// Fills the errors of cards, whose points lie anywhere behind what they show, by pictures of a
+/// crown in the colors that they have: Pictured.
 void compare_crowns(StandInCandidate& candidate, const MeasuredFinest& finest,
                     FinestPictures& pictures, const Job& job);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/pictures/patch_light.h"
 
+#include "measure/pictures/cube_views.h"
 #include "measure/pictures/glass_rays.h"
 #include "measure/pictures/patch_grid.h"
 
@@ -13,10 +14,6 @@
 namespace lodestone::measure {
 namespace {
 
-// The share of the light on a surface facing the lamp that comes from the sky.
-// Taste: pictures (kSky in picture_agreement.cpp) have the same; a larger value shows less of the
-// shape.
-constexpr double kAmbient = 0.25;
 // A surface shows one color when the root of the mean square of its colors' differences, over the
 // mean color, is less than this.
 // Taste: a larger value paints fewer boxes with several colors.
@@ -30,7 +27,7 @@ ray::SurfaceAppearance shown_at(const Mesh& mesh, const ray::MeshSkin& skin,
 
 /// The light on a surface, over that on a surface facing the lamp; `facing` is the cosine.
 double light_of(double facing) {
-    return kAmbient + (1 - kAmbient) * facing;
+    return kSkyShare + (1 - kSkyShare) * facing;
 }
 
 glm::dvec3 light_at(const Mesh& mesh, const ray::MeshSkin& skin, const ray::RayHit& hit,

@@ -23,11 +23,6 @@ namespace {
 // Law: the divisors of kFineSide (180), of which all other sides are some, above 1.
 constexpr std::array<int, 17> kPixelSides{2,  3,  4,  5,  6,  9,  10, 12, 15,
                                           18, 20, 30, 36, 45, 60, 90, 180};
-// The share of the sky in the light on a surface that faces the sun. Nothing shades the sky:
-// pictures show it so, as one ambient light.
-// Taste: as on a clear day; a larger value tells less of the shape. At 0.35 and 0.5 trees came out
-// darker.
-constexpr double kSky = 0.25;
 // A stand-in that differs as a whole is never more than this farther off than it is large.
 // Taste: a larger value uses it only farther away.
 constexpr double kMostMisses = 2;
@@ -42,8 +37,9 @@ struct PictureView {
 
     PictureView(const glm::dvec3& towards, size_t number, PictureViews views) {
         frame = picture_frame(towards);
-        // The suns stand around the views by the golden angle: each view has its own. Those of crowns
-        // fill the half sphere above: against the light a crown has that of leaves that face aside.
+        // The suns stand around the views by the golden angle: each view has its own. Those of
+        // crowns fill the half sphere above: against the light a crown has that of leaves that face
+        // aside.
         const double turn = kGoldenAngle * static_cast<double>(number);
         sun = views == PictureViews::OfCrowns
                   ? sky_direction(number)
@@ -188,10 +184,10 @@ AgreementReference::TracedPictures AgreementReference::trace(const Mesh& mesh,
             const double area = glm::length(flat);
             flat = area > 0 ? flat / area : viewer;
             const glm::dvec3 from = hit.point + lift * (glm::dot(flat, viewer) < 0 ? -flat : flat);
-            double light = kSky;
+            double light = kSkyShare;
             const double facing = glm::dot(normal, view.sun);
             if (facing > 0 && !glass.opaque().occluded(from, view.sun, blockers))
-                light += (1 - kSky) * facing;
+                light += (1 - kSkyShare) * facing;
             out.samples_[number] = {hit.triangle, static_cast<float>(hit.u),
                                     static_cast<float>(hit.v), static_cast<float>(light)};
         }

@@ -51,9 +51,9 @@ struct PictureRect;  // picture_misses.h
 ///
 /// Pictures are orthographic, along 13 axes (the opposite directions cover the same), of a diffuse
 /// surface under a uniform sky, which gives a quarter of the light, and a sun that stands obliquely
-/// beside the viewer (of crowns, anywhere), with shadows; glass refracts what lies behind it. Both meshes are sampled by
-/// the same rays. Larger pixels are means of smaller ones. Sampling noise is taken out of the
-/// differences.
+/// beside the viewer (of crowns, anywhere), with shadows; glass refracts what lies behind it. Both
+/// meshes are sampled by the same rays. Larger pixels are means of smaller ones. Sampling noise is
+/// taken out of the differences.
 class AgreementReference {
 public:
     /// Samples along a side of the finest's bounding square; the smallest pixel is two samples

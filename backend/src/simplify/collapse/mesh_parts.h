@@ -25,8 +25,8 @@ public:
     /// Makes the costs of the parts, from the removable one with number `from` on, count how far a
     /// part lies from what is left without it and without all cheaper ones: what lies on another
     /// part may go, what stands alone stays longer. Parts that are cheaper than `below`, and some
-    /// dearer ones, are located, each once since they were measured. cost: n log n of the live triangles where one
-    /// is.
+    /// dearer ones, are located, each once since they were measured. cost: n log n of the live
+    /// triangles where one is. Throws Error(Cancelled).
     void locate(const CollapseMesh& mesh, double below, size_t from, const Job& job);
 
     /// The parts, cheapest first, without the dearest one (which always stays).

@@ -22,8 +22,8 @@ Mesh live_triangles(const CollapseMesh& mesh) {
 }
 
 double square_to(const Box3& box, const glm::dvec3& place) {
-    const glm::dvec3 beside = glm::max(glm::max(box.low - place, place - box.high), 0.0);
-    return glm::dot(beside, beside);
+    const glm::dvec3 beyond = box.beyond(place);
+    return glm::dot(beyond, beyond);
 }
 
 }  // namespace
