@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/pictures/view_distances.h"
 
+#include "base/maths.h"
 #include "base/parallel.h"
 #include "measure/pictures/cube_views.h"
 #include "measure/visible/visible_sampler.h"
@@ -27,31 +28,14 @@ constexpr double kCoarse = 0.25;
 /// The share of a picture's pixels that may be farther off.
 /// Taste: a larger value loses thin parts, a smaller one counts single spikes.
 constexpr double kMostFar = 0.001;
-/// Pictures show this much around the finest's bound, for larger stand-ins.
-/// Taste: a larger value wastes more rays around the object.
-constexpr double kFrameMargin = 1.1;
-
-/// The rectangle around a mesh in a picture.
-struct PictureFrame {
-    glm::dvec3 right, up;
-    glm::dvec3 low{std::numeric_limits<double>::infinity()};
-    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
-
-    PictureFrame(const std::vector<glm::dvec3>& points, const glm::dvec3& towards) {
-        const glm::dmat3 frame = picture_frame(towards);
-        right = frame[0];
-        up = frame[1];
-        for (const glm::dvec3& point : points) {
-            const glm::dvec3 at(glm::dot(point, right), glm::dot(point, up),
-                                glm::dot(point, towards));
-            low = glm::min(low, at);
-            high = glm::max(high, at);
-        }
-        const glm::dvec3 margin = (kFrameMargin - 1) / 2 * (high - low);
-        low -= margin;
-        high += margin;
-    }
-};
+/// The share of a picture from which on the finest is seen well, and the pixels that it is to cover
+/// where it is less.
+/// Taste: larger values see smaller parts of what is strewn, for more rays.
+constexpr double kThin = 0.125;
+constexpr double kCovered = 1000;  // Taste: as kThin
+/// The parts along both sides of a pixel, at most.
+/// Taste: as kThin.
+constexpr double kMostParts = 8;
 
 /// The corners of a mesh's triangles, each once.
 std::vector<glm::dvec3> corners_of(const Mesh& mesh) {
@@ -67,15 +51,20 @@ std::vector<glm::dvec3> corners_of(const Mesh& mesh) {
     return out;
 }
 
-/// The distance that at most a few of these exceed.
-double most_of(std::vector<double>& far, size_t pixels) {
-    const auto few =
-        std::max<size_t>(1, static_cast<size_t>(kMostFar * static_cast<double>(pixels)));
-    if (far.size() <= few)
-        return 0;
-    std::nth_element(far.begin(), far.begin() + static_cast<std::ptrdiff_t>(few), far.end(),
-                     std::greater<>());
-    return far[few];
+/// What a ray found: how far off, and of how many pixels.
+using PixelDistance = std::pair<double, uint64_t>;
+
+/// The distance that at most a few of these pixels exceed.
+double most_of(std::vector<PixelDistance>& far, uint64_t pixels) {
+    const auto few = static_cast<uint64_t>(kMostFar * static_cast<double>(pixels));
+    std::sort(far.begin(), far.end(), std::greater<>());
+    uint64_t farther = 0;
+    for (size_t i = 0; i < far.size(); ++i) {
+        farther += far[i].second;
+        if (i > 0 && farther > few)
+            return far[i].first;
+    }
+    return 0;
 }
 
 /// The distances of points, mostly neighbors in the list, to one surface.
@@ -119,48 +108,77 @@ ViewDistances::ViewDistances(const Mesh& finest, const ray::MeshScene& scene)
       fine_{kPixels, {}, {}},
       coarse_{kFewPixels, {}, {}} {}
 
-void ViewDistances::aim(ViewPictures& pictures) const {
-    pictures.rays.clear();
+void ViewDistances::cast(std::span<ViewRay> rays, const Job& job) const {
+    parallel_for((rays.size() + kBlock - 1) / kBlock, [&](size_t block) {
+        job.check();
+        const ray::FlushDenormals burst;
+        for (size_t i = block * kBlock; i < std::min(rays.size(), (block + 1) * kBlock); ++i) {
+            ViewRay& one = rays[i];
+            const ray::RayHit hit = scene_.first_hit(one.origin, -directions_[one.view]);
+            one.seen = hit.hit;
+            one.point = hit.point;
+        }
+    });
+}
+
+void ViewDistances::divide(const PictureGrid& grid, std::span<const ViewRay> whole, size_t parts,
+                           const Job& job, std::vector<ViewRay>& out) const {
+    const std::vector<uint8_t> overlapped = grid.overlapped(finest_, parts);
+    std::vector<ViewRay> fine;
+    for (size_t pixel = 0; pixel < whole.size(); ++pixel) {
+        ViewRay rest = whole[pixel];
+        rest.pixels = 0;
+        const size_t column = parts * (pixel % grid.columns());
+        const size_t row = parts * (pixel / grid.columns());
+        for (size_t i = 0; i < parts * parts; ++i) {
+            const size_t part = (row + i / parts) * parts * grid.columns() + column + i % parts;
+            if (overlapped[part] != 0)
+                fine.push_back({grid.origin(part, parts), rest.view});
+            else
+                ++rest.pixels;
+        }
+        // Only a stand-in can be where the finest is not.
+        if (!rest.seen && rest.pixels > 0)
+            out.push_back(rest);
+    }
+    cast(fine, job);
+    out.insert(out.end(), fine.begin(), fine.end());
+}
+
+std::vector<ViewDistances::ViewRay> ViewDistances::taken(double pixels, const Job& job) const {
     const std::vector<glm::dvec3> corners = corners_of(finest_);
     if (corners.empty())
-        return;
+        return {};
+    std::vector<PictureGrid> grids;
+    std::vector<ViewRay> whole;
     for (uint32_t view = 0; view < directions_.size(); ++view) {
-        const glm::dvec3& towards = directions_[view];
-        const PictureFrame frame(corners, towards);
-        const glm::dvec3 size = frame.high - frame.low;
-        const double cell = std::sqrt(size.x * size.y / pictures.pixels);
-        // A flat thing is a line from its side: nothing to see.
-        if (!(cell > 0) || !std::isfinite(cell) || std::max(size.x, size.y) > cell * kPixels)
-            continue;
-        const double front = frame.high.z + size.x + size.y;
-        const auto columns = static_cast<int>(std::ceil(size.x / cell));
-        const auto rows = static_cast<int>(std::ceil(size.y / cell));
-        for (int pixel = 0; pixel < rows * columns; ++pixel) {
-            const int row = pixel / columns;
-            const double x = frame.low.x + (pixel % columns + 0.5) * size.x / columns;
-            const double y = frame.low.y + (row + 0.5) * size.y / rows;
-            pictures.rays.push_back({x * frame.right + y * frame.up + front * towards, view});
-        }
+        const PictureGrid& grid = grids.emplace_back(corners, directions_[view], pixels);
+        for (size_t pixel = 0; pixel < grid.pixels(); ++pixel)
+            whole.push_back({grid.origin(pixel), view});
     }
+    cast(whole, job);
+    std::vector<ViewRay> out;
+    auto rays = std::span<const ViewRay>(whole);
+    for (const PictureGrid& grid : grids) {
+        const auto here = rays.first(grid.pixels());
+        rays = rays.subspan(here.size());
+        const auto covered = static_cast<double>(
+            std::count_if(here.begin(), here.end(), [](const ViewRay& one) { return one.seen; }));
+        size_t parts = 1;
+        if (covered < kThin * static_cast<double>(here.size()))
+            parts = static_cast<size_t>(limited(std::sqrt(kCovered / covered), 1, kMostParts));
+        if (parts > 1)
+            divide(grid, here, parts, job, out);
+        else
+            out.insert(out.end(), here.begin(), here.end());
+    }
+    return out;
 }
 
 const std::vector<ViewDistances::ViewRay>& ViewDistances::rays(double near, const Job& job) const {
     ViewPictures& pictures = near < kCoarse * radius_ ? fine_ : coarse_;
-    std::vector<ViewRay>& out = pictures.rays;
-    std::call_once(pictures.taken, [&] {
-        aim(pictures);
-        parallel_for((out.size() + kBlock - 1) / kBlock, [&](size_t block) {
-            job.check();
-            const ray::FlushDenormals burst;
-            for (size_t i = block * kBlock; i < std::min(out.size(), (block + 1) * kBlock); ++i) {
-                ViewRay& one = out[i];
-                const ray::RayHit hit = scene_.first_hit(one.origin, -directions_[one.view]);
-                one.seen = hit.hit;
-                one.point = hit.point;
-            }
-        });
-    });
-    return out;
+    std::call_once(pictures.taken, [&] { pictures.rays = taken(pictures.pixels, job); });
+    return pictures.rays;
 }
 
 double ViewDistances::worst(const ray::MeshScene& stand_in, ViewedWay ways, double near,
@@ -188,14 +206,14 @@ double ViewDistances::worst(const ray::MeshScene& stand_in, ViewedWay ways, doub
         }
     });
     double out = 0;
-    std::vector<double> far;
+    std::vector<PixelDistance> far;
     for (size_t begin = 0, end = 0; begin < asked.size(); begin = end) {
-        size_t pixels = 0;
+        uint64_t pixels = 0;
         far.clear();
         for (end = begin; end < asked.size() && asked[end].view == asked[begin].view; ++end) {
-            pixels += off[end] >= 0 ? 1 : 0;
+            pixels += off[end] >= 0 ? asked[end].pixels : 0;
             if (off[end] > near && std::isfinite(off[end]))
-                far.push_back(off[end]);
+                far.emplace_back(off[end], asked[end].pixels);
         }
         out = std::max(out, most_of(far, pixels));
     }

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "base/job.h"
+#include "measure/pictures/picture_grid.h"
 #include "ray/mesh_scene.h"
 
 #include <array>
 #include <mutex>
+#include <span>
 #include <vector>
 
 namespace lodestone::measure {
@@ -19,6 +21,8 @@ enum class ViewedWay : uint8_t { ToStandIn, Both };
 /// from there. Orthographic pictures are taken along 26 directions, to the faces, edges and corners
 /// of a cube, of some 600 pixels around the finest each; of a quarter of these where what counts as
 /// near is an eighth of the size or more, so that no eye for whom that is a pixel sees as many.
+/// Where the finest covers few of them, as what is strewn does, these are divided, so that about as
+/// many see it as of what is compact.
 class ViewDistances {
 public:
     /// Keeps references to the mesh and its scene; the pictures are taken when they are first asked
@@ -38,7 +42,8 @@ private:
     struct ViewRay {
         glm::dvec3 origin;
         uint32_t view;
-        bool seen = false;  // it meets the finest, there:
+        uint32_t pixels = 1;  // stands for so many
+        bool seen = false;    // it meets the finest, there:
         glm::dvec3 point{0.0};
     };
     /// Pictures of about so many pixels each.
@@ -47,7 +52,10 @@ private:
         std::once_flag taken;  // fills rays where they lead
         std::vector<ViewRay> rays;
     };
-    void aim(ViewPictures& pictures) const;
+    void cast(std::span<ViewRay> rays, const Job& job) const;
+    void divide(const PictureGrid& grid, std::span<const ViewRay> whole, size_t parts,
+                const Job& job, std::vector<ViewRay>& out) const;
+    std::vector<ViewRay> taken(double pixels, const Job& job) const;
     const std::vector<ViewRay>& rays(double near, const Job& job) const;
 
     const Mesh& finest_;

@@ -75,6 +75,21 @@ TEST_F(ViewDistance, AFewPixelsSeeWhatIsLarge) {
     EXPECT_NEAR(worst(chimney, shapes::box({0, 0, 0}, {4, 4, 4}), ViewedWay::Both, 1), 2, 0.2);
 }
 
+// A part was met by one ray or none, which counts for nothing.
+TEST_F(ViewDistance, PartsOfWhatIsStrewnAreSeen) {
+    Mesh strewn;
+    for (int i = 0; i < 40; ++i)
+        strewn = with_box(std::move(strewn), {7.0 * (i % 8), 90.0 * (i % 3), 11.0 * (i / 8)},
+                          {1.5, 1.5, 1.5});
+    const Mesh one = with_box(strewn, {20, 45, 20}, {1.5, 1.5, 1.5});
+    EXPECT_GT(worst(one, strewn), 20) << "the stand-in lacks it";
+    EXPECT_GT(worst(one, strewn, ViewedWay::ToStandIn), 20);
+    EXPECT_NEAR(worst(one, one), 0, 1e-5);
+    const Mesh wall = with_box(strewn, {0, 45, 0}, {50, 0.3, 40});
+    EXPECT_GT(worst(strewn, wall), 20) << "it comes from nowhere";
+    EXPECT_LT(worst(strewn, wall, ViewedWay::ToStandIn), 1e-5);
+}
+
 TEST_F(ViewDistance, WhatCountsAsNearChangesNothingFartherOff) {
     // Neighbors of a point that is near are not looked up.
     const Mesh ball = shapes::sphere(1);
