@@ -295,7 +295,7 @@ private:
         all.reserve(occluders_.size());
         for (const light::SkyOccluder& occluder : occluders_)
             all.push_back(occluder.representation);
-        surfaces_.add(all, job_);
+        surfaces_.add_meshes(all, job_);
         return around_.emplace(model_, surfaces_, occluders_, job_);
     }
 

@@ -46,7 +46,7 @@ uint64_t drawn_triangles(const Representation& representation) {
                                            : solid_triangles(summary.kind, representation.payload);
 }
 
-SkySurface SkySurfaces::made(const Representation& representation) {
+SkySurface SkySurfaces::made(const Representation& representation) const {
     SkySurface out;
     if (representation.summary.kind == Kind::Mesh && representation.resident())
         out.mesh = std::get<std::shared_ptr<const Mesh>>(representation.payload);
@@ -58,23 +58,30 @@ SkySurface SkySurfaces::made(const Representation& representation) {
         const double own = glm::length(area_vector(*out.mesh, i));
         out.areas.push_back(area += std::isfinite(own) ? own : 0);
     }
-    std::vector<Material> materials;
     for (const uint32_t index : representation.materials) {
         const Material* material =
             index < model_.materials.size() ? &model_.materials[index] : nullptr;
-        materials.push_back(material != nullptr ? clear_material(*material) : Material{});
-        out.see_through.push_back(material != nullptr && lets_light_through(*material) ? 1 : 0);
+        const bool clear = material != nullptr && lets_light_through(*material);
+        out.see_through.push_back(clear ? 1 : 0);
         out.materials.push_back(index);
-        const bool masked = material != nullptr && lets_light_through(*material);
-        out.masks.push_back(
-            masked && material->alpha_texture ? material->alpha_texture.picture->hash : Hash{0});
+        out.masks.push_back(clear && material->alpha_texture ? material->alpha_texture.picture->hash
+                                                             : Hash{0});
     }
-    const bool any = std::find(out.see_through.begin(), out.see_through.end(), uint8_t{1}) !=
-                     out.see_through.end();
-    ray::SkinPtr skin =
-        any ? std::make_shared<const ray::MeshSkin>(materials, *texels_) : ray::SkinPtr{};
-    out.scene = std::make_shared<const ray::MeshScene>(*out.mesh, std::move(skin));
     return out;
+}
+
+std::shared_ptr<const ray::MeshScene> SkySurfaces::scene_of(const SkySurface& surface) const {
+    ray::SkinPtr skin;
+    if (std::find(surface.see_through.begin(), surface.see_through.end(), uint8_t{1}) !=
+        surface.see_through.end()) {
+        std::vector<Material> materials;
+        for (const uint32_t index : surface.materials)
+            materials.push_back(index < model_.materials.size()
+                                    ? clear_material(model_.materials[index])
+                                    : Material{});
+        skin = std::make_shared<const ray::MeshSkin>(materials, *texels_);
+    }
+    return std::make_shared<const ray::MeshScene>(*surface.mesh, std::move(skin));
 }
 
 ray::SkinPtr SkySurfaces::skin_of_model() const {
@@ -82,6 +89,23 @@ ray::SkinPtr SkySurfaces::skin_of_model() const {
 }
 
 void SkySurfaces::add(std::span<const Representation* const> representations, const Job& job) {
+    add_meshes(representations, job);
+    std::vector<SkySurface*> bare;
+    for (const Representation* representation : representations) {
+        SkySurface& surface = known_.at(representation->summary.hash);
+        if (!surface.scene)
+            bare.push_back(&surface);
+    }
+    std::sort(bare.begin(), bare.end());
+    bare.erase(std::unique(bare.begin(), bare.end()), bare.end());
+    parallel_for(bare.size(), [&](size_t i) {
+        job.check();
+        bare[i]->scene = scene_of(*bare[i]);
+    });
+}
+
+void SkySurfaces::add_meshes(std::span<const Representation* const> representations,
+                             const Job& job) {
     std::vector<std::pair<const Representation*, SkySurface*>> fresh;
     for (const Representation* representation : representations) {
         const auto [at, is_new] = known_.try_emplace(representation->summary.hash);
@@ -135,7 +159,7 @@ void SkyScene::join(const SkyOccluder& occluder, const SkySurface& surface) {
     }
 }
 
-SkyScene::SkyScene(const Model& model, const SkySurfaces& surfaces,
+SkyScene::SkyScene(const Model& model, SkySurfaces& surfaces,
                    std::span<const SkyOccluder> occluders, const Job& job, uint64_t most_joined)
     : occluders_(occluders) {
     std::unordered_map<Hash, uint64_t> counts;
@@ -165,6 +189,7 @@ SkyScene::SkyScene(const Model& model, const SkySurfaces& surfaces,
         origin_[axis] = *middle;
     }
     uint64_t triangles = 0;
+    std::vector<uint32_t> apart;
     // Slots have 16 bits.
     const bool materials_fit = model.materials.size() < 0xffffu;
     for (const auto& [count, i] : order) {
@@ -179,8 +204,15 @@ SkyScene::SkyScene(const Model& model, const SkySurfaces& surfaces,
         if (fits && triangles <= most_joined && (materials_fit || surface.see_through.empty()))
             join(occluder, surface);
         else
-            placed_.add(surface.scene, occluder.representation->summary.bound, occluder.world, i);
+            apart.push_back(i);
     }
+    std::vector<const Representation*> needed;
+    for (const uint32_t i : apart)
+        needed.push_back(occluders[i].representation);
+    surfaces.add(needed, job);
+    for (const uint32_t i : apart)
+        placed_.add(surfaces_[i]->scene, occluders[i].representation->summary.bound,
+                    occluders[i].world, i);
     placed_.finish();
     if (!opaque_.mesh.triangles.empty())
         opaque_.scene.emplace(opaque_.mesh);

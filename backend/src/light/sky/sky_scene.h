@@ -31,11 +31,11 @@ struct SkyOccluder {
 /// One representation as the sky meets it. Its solids are triangles.
 struct SkySurface {
     std::shared_ptr<const Mesh> mesh;
-    std::shared_ptr<const ray::MeshScene> scene;
-    std::vector<uint8_t> see_through;  // by slot: light goes through some or all of it
-    std::vector<uint32_t> materials;   // by slot, of the model
-    std::vector<Hash> masks;           // by slot (joined: of all), the picture of its mask; 0: none
-    std::vector<double> areas;         // of each triangle and all before it
+    std::shared_ptr<const ray::MeshScene> scene;  // null: nobody casts rays at it alone
+    std::vector<uint8_t> see_through;             // by slot: light goes through some or all of it
+    std::vector<uint32_t> materials;              // by slot, of the model
+    std::vector<Hash> masks;    // by slot (joined: of all), the picture of its mask; 0: none
+    std::vector<double> areas;  // of each triangle and all before it
 
     double area() const { return areas.empty() ? 0 : areas.back(); }
     double area_of(size_t triangle) const {
@@ -62,6 +62,8 @@ public:
     /// Makes what is not made yet. Throws Error(RaysUnavailable), Error(Internal) for what is not
     /// resident, Error(BadFile) for a mask that cannot be decoded.
     void add(std::span<const Representation* const> representations, const Job& job);
+    /// The same without scenes, which take most of the time.
+    void add_meshes(std::span<const Representation* const> representations, const Job& job);
     /// The surface of a representation that was added.
     const SkySurface& of(const Representation& representation) const {
         return known_.at(representation.summary.hash);
@@ -70,7 +72,8 @@ public:
     ray::SkinPtr skin_of_model() const;
 
 private:
-    SkySurface made(const Representation& representation);
+    SkySurface made(const Representation& representation) const;
+    std::shared_ptr<const ray::MeshScene> scene_of(const SkySurface& surface) const;
 
     const Model& model_;
     std::unordered_map<Hash, SkySurface> known_;
@@ -90,10 +93,10 @@ public:
     /// Taste: a larger value is faster where much is placed often, for 0.2 KB and 1 us a triangle.
     static constexpr uint64_t kMostJoined = 1'500'000;
 
-    /// The representations of all occluders were added to the surfaces. Both outlive the scene.
-    SkyScene(const Model& model, const SkySurfaces& surfaces,
-             std::span<const SkyOccluder> occluders, const Job& job,
-             uint64_t most_joined = kMostJoined);
+    /// The meshes of all occluders were added to the surfaces; scenes are where they are needed. Both
+    /// outlive the scene.
+    SkyScene(const Model& model, SkySurfaces& surfaces, std::span<const SkyOccluder> occluders,
+             const Job& job, uint64_t most_joined = kMostJoined);
 
     /// Whether an occluder hides the sky in a direction. `blocker` begins as
     /// ray::PlacedScenes::kNothing and makes the next call faster.
