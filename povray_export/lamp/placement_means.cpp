@@ -10,7 +10,7 @@ namespace {
 
 // The version of what is kept: raised whenever rays are chosen in another way.
 // Law: part of every key.
-constexpr uint32_t kMeansVersion = 19;
+constexpr uint32_t kMeansVersion = 20;
 // Rays that tell what is around one placement, where placements are few.
 // Taste: more are truer and take longer.
 constexpr int kMeanRays = 128;

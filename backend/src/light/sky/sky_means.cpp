@@ -90,6 +90,10 @@ private:
 // Taste: a larger value tells what is around denser things, for rays that tell nothing.
 constexpr int kMostRounds = 8;
 constexpr int kFewestLeft = 8;  // Taste: as kMostRounds; of few rays half as many are enough
+// The dark triangles that are looked at, where none of them lies inside of something.
+// Taste: more find smaller parts inside of something; a look takes as long as ten rays, and all of a thing in
+// a room is dark.
+constexpr size_t kMostLooked = 12;
 // How far the places of one round lie from those of the last, in parts of the way between two.
 // Law: the golden ratio, whose multiples lie nowhere close together.
 constexpr double kGoldenPart = 0.6180339887498949;
@@ -113,10 +117,14 @@ SkyMeans mean_sky_shares(const SkyRequest& request, int rays) {
     PassedRays passed;
     LeafSums leaves;
     std::unordered_map<size_t, bool> looked;  // by triangle, whether it lies inside of something
+    bool any_inside = false;
     const auto lies_inside = [&](size_t triangle, const SkySampler::PlacedTriangle& placed) {
+        if (!any_inside && looked.size() >= kMostLooked)
+            return false;
         const auto [at, fresh] = looked.try_emplace(triangle);
         if (fresh)
             at->second = sampler.lies_inside(mesh, triangle, placed);
+        any_inside = any_inside || at->second;
         return at->second;
     };
     int left = 0;  // rays that the surface itself does not stop
