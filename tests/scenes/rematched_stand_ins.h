@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <string>
 
 namespace lodestone {
@@ -71,8 +72,8 @@ inline std::vector<Rematched> rematched(Mesh mesh, bool coarse, size_t most_soli
     many.seed = 77;
     const Attributes truth =
         measure::measure_visible(mesh, ray::MeshScene(mesh, skin), skin, many).attributes;
-    std::vector<measure::AgreementReference> pictures;
-    for (const uint64_t seed : {101, 102, 103, 104})  // four times the samples each
+    std::deque<measure::AgreementReference> pictures;  // they stay where they are made
+    for (const uint64_t seed : {101, 102, 103, 104})   // four times the samples each
         pictures.emplace_back(mesh, skin, seed, measure::AgreementReference::kSide);
     const auto off = [](const glm::dvec3& a, const glm::dvec3& b) {
         const glm::dvec3 miss =

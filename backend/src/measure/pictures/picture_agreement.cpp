@@ -2,8 +2,6 @@
 #include "measure/pictures/picture_agreement.h"
 
 #include "base/parallel.h"
-#include "measure/pictures/cube_views.h"
-#include "measure/pictures/glass_rays.h"
 #include "measure/pictures/picture_misses.h"
 #include "measure/visible/sobol_points.h"
 #include "measure/visible/visible_sampler.h"
@@ -30,59 +28,6 @@ constexpr double kMostMisses = 2;
 // Taste: a larger value wastes more samples around the object.
 constexpr double kMargin = 1.1;
 
-/// A view of a picture.
-struct PictureView {
-    glm::dmat3 frame{1.0};  // columns: right, up, towards the viewer
-    glm::dvec3 sun{0.0};
-
-    PictureView(const glm::dvec3& towards, size_t number, PictureViews views) {
-        frame = picture_frame(towards);
-        // The suns stand around the views by the golden angle: each view has its own. Those of
-        // crowns fill the half sphere above: against the light a crown has that of leaves that face
-        // aside.
-        const double turn = kGoldenAngle * static_cast<double>(number);
-        sun = views == PictureViews::OfCrowns
-                  ? sky_direction(number)
-                  : glm::normalize(towards + std::cos(turn) * frame[0] + std::sin(turn) * frame[1]);
-    }
-};
-
-/// Along one of each opposite pair of 26 directions: in turns, or of crowns the upper ones.
-std::vector<PictureView> views_of(PictureViews views) {
-    std::vector<glm::dvec3> directions = cube_directions();
-    directions.resize(directions.size() / 2);
-    std::vector<PictureView> out;
-    for (size_t i = 0; i < directions.size(); ++i) {
-        const bool opposite = views == PictureViews::OfCrowns ? directions[i].z < 0 : i % 2 == 1;
-        out.emplace_back(opposite ? -directions[i] : directions[i], i, views);
-    }
-    return out;
-}
-
-/// The rectangle around all that a mesh has in a view, in half sides of the picture from its
-/// middle.
-struct ViewExtent {
-    glm::dvec2 low{std::numeric_limits<double>::infinity()};
-    glm::dvec2 high{-std::numeric_limits<double>::infinity()};
-
-    ViewExtent(const Mesh& mesh, const PictureView& view, const glm::dvec3& center, double radius) {
-        // The doubt about where rays hit, over the radius.
-        // Taste: well above single precision's 6e-8; a larger value casts a few rays more.
-        constexpr double kRounding = 1e-5;
-        for (const glm::vec3& position : mesh.positions) {
-            const glm::dvec3 arm = glm::dvec3(position) - center;
-            const glm::dvec2 at(glm::dot(arm, view.frame[0]), glm::dot(arm, view.frame[1]));
-            if (!std::isfinite(at.x + at.y))
-                continue;
-            low = glm::min(low, at / radius - kRounding);
-            high = glm::max(high, at / radius + kRounding);
-        }
-    }
-    bool has(double x, double y) const {
-        return x >= low.x && x <= high.x && y >= low.y && y <= high.y;
-    }
-};
-
 /// The appearance of a slot where nothing is looked up, and whether something is looked up.
 struct SlotAppearance {
     ray::SurfaceAppearance mean;
@@ -105,9 +50,14 @@ glm::dvec4 light_of(const ray::SurfaceAppearance& shown, double light) {
 
 AgreementReference::AgreementReference(const Mesh& finest, const ray::SkinPtr& skin, uint64_t seed,
                                        int side, const Job& job)
-    : AgreementReference(finest, ray::MeshScene(finest, skin), skin, seed, side, job) {}
+    : AgreementReference(finest, nullptr, skin, seed, side, job, PictureViews::AllAround) {}
 
 AgreementReference::AgreementReference(const Mesh& finest, const ray::MeshScene& scene,
+                                       const ray::SkinPtr& skin, uint64_t seed, int side,
+                                       const Job& job, PictureViews views)
+    : AgreementReference(finest, &scene, skin, seed, side, job, views) {}
+
+AgreementReference::AgreementReference(const Mesh& finest, const ray::MeshScene* scene,
                                        const ray::SkinPtr& skin, uint64_t seed, int side,
                                        const Job& job, PictureViews views)
     : side_(side), views_(views) {
@@ -135,73 +85,6 @@ AgreementReference::AgreementReference(const Mesh& finest, const ray::MeshScene&
     finest_ = shown(traced, skin.get());
     finest_points_ = points_of(traced);
     finest_total_ = total(traced, skin.get());
-}
-
-AgreementReference::TracedPictures AgreementReference::trace(const Mesh& mesh,
-                                                             const ray::SkinPtr& skin,
-                                                             const Job& job) const {
-    return trace(mesh, ray::MeshScene(mesh, skin), skin, job);
-}
-
-AgreementReference::TracedPictures AgreementReference::trace(const Mesh& mesh,
-                                                             const ray::MeshScene& scene,
-                                                             const ray::SkinPtr& skin,
-                                                             const Job& job) const {
-    TracedPictures out(mesh);
-    const auto row = static_cast<size_t>(side_);
-    out.samples_.resize(kViews * row * row);
-    if (mesh.empty() || !(radius_ > 0))
-        return out;
-    const std::vector<PictureView> views = views_of(views_);
-    const double lift = ray_lift(radius_);
-    const GlassRays glass(mesh, skin, scene, lift);
-    // On most things nine of ten rays would miss: things are long and narrow, and their bound is
-    // round.
-    std::vector<std::optional<ViewExtent>> frames(kViews);
-    parallel_for(kViews, [&](size_t number) {
-        frames[number].emplace(mesh, views[number], center_, radius_);
-    });
-    parallel_for(kViews * row, [&](size_t line) {
-        job.check();
-        const ray::FlushDenormals burst;
-        ray::RecentBlockers blockers;
-        const PictureView& view = views[line / row];
-        const ViewExtent& frame = *frames[line / row];
-        for (size_t column = 0; column < row; ++column) {
-            const size_t number = line * row + column;
-            const double x = places_[number].x;
-            const double y = places_[number].y;
-            if (x * x + y * y > 1 || !frame.has(x, y))
-                continue;
-            glm::dvec3 along = -view.frame[2];
-            const ray::RayHit hit =
-                glass.first_hit(center_ + radius_ * (view.frame * glm::dvec3(x, y, 2)), along);
-            if (!hit.hit)
-                continue;
-            const glm::dvec3 viewer = -along;
-            const glm::dvec3 normal = normal_at(mesh, hit, viewer);
-            glm::dvec3 flat = area_vector(mesh, hit.triangle);
-            const double area = glm::length(flat);
-            flat = area > 0 ? flat / area : viewer;
-            const glm::dvec3 from = hit.point + lift * (glm::dot(flat, viewer) < 0 ? -flat : flat);
-            double light = kSkyShare;
-            const double facing = glm::dot(normal, view.sun);
-            if (facing > 0 && !glass.opaque().occluded(from, view.sun, blockers))
-                light += (1 - kSkyShare) * facing;
-            out.samples_[number] = {hit.triangle, static_cast<float>(hit.u),
-                                    static_cast<float>(hit.v), static_cast<float>(light)};
-        }
-    });
-    for (const TracedPictures::TracedSample& sample : out.samples_) {
-        if (sample.triangle == ray::kNoTriangle)
-            continue;
-        const uint16_t slot = mesh.slot(sample.triangle);
-        if (out.by_slot_.size() <= slot)
-            out.by_slot_.resize(slot + size_t{1});
-        out.by_slot_[slot].light += sample.light;
-        ++out.by_slot_[slot].count;
-    }
-    return out;
 }
 
 AgreementReference::Pictures AgreementReference::shown(const TracedPictures& traced,

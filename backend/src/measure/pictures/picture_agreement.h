@@ -4,10 +4,11 @@
 #pragma once
 
 #include "base/job.h"
-#include "ray/mesh_scene.h"
+#include "ray/parallel_rays.h"
 
 #include <array>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -56,6 +57,10 @@ struct PictureRect;  // picture_misses.h
 /// taken out of the differences.
 class AgreementReference {
 public:
+    /// Axes along which pictures are taken.
+    /// Law: the faces, edges and corners of a cube, one of each opposite pair (3 + 6 + 4).
+    static constexpr size_t kViews = 13;
+
     /// Samples along a side of the finest's bounding square; the smallest pixel is two samples
     /// wide.
     /// Taste: a larger value resolves smaller errors, for time that grows with its square.
@@ -119,12 +124,18 @@ public:
     PictureAgreement brightness_of(const TracedPictures& stand_in, const ray::SkinPtr& skin) const;
 
 private:
-    /// Axes along which pictures are taken.
-    /// Law: the faces, edges and corners of a cube, one of each opposite pair (3 + 6 + 4).
-    static constexpr size_t kViews = 13;
-
-    TracedPictures trace(const Mesh& stand_in, const ray::MeshScene& scene,
+    AgreementReference(const Mesh& finest, const ray::MeshScene* scene, const ray::SkinPtr& skin,
+                       uint64_t seed, int side, const Job& job, PictureViews views);
+    TracedPictures trace(const Mesh& stand_in, const ray::MeshScene* scene,
                          const ray::SkinPtr& skin, const Job& job) const;
+    /// Fills the samples of an opaque mesh of few triangles, or in its scene those of any mesh.
+    void draw(const Mesh& mesh, TracedPictures& out, const Job& job) const;
+    void search(const Mesh& mesh, const ray::MeshScene& scene, const ray::SkinPtr& skin,
+                TracedPictures& out, const Job& job) const;
+    /// Where the ray of a sample starts.
+    glm::dvec3 origin_of(const glm::dmat3& frame, const glm::dvec2& place) const;
+    /// The rays of the samples of each view; those outside of the circle are not finite.
+    const std::vector<ray::ParallelRays>& rays() const;
 
     /// Coverage and light (premultiplied) of each sample of each view.
     using Pictures = std::vector<glm::vec4>;
@@ -152,6 +163,8 @@ private:
     Pictures finest_;
     std::vector<glm::vec3> finest_points_;
     glm::dvec4 finest_total_{0.0};
+    mutable std::once_flag aimed_;  // fills rays_ when they are first asked for
+    mutable std::vector<ray::ParallelRays> rays_;
 };
 
 class AgreementReference::TracedPictures {

@@ -277,3 +277,33 @@ TEST_F(Agreements, CrownsAreSeenFromAboveTheHorizon) {
     EXPECT_GT(plainly.of(both, two).light.x, 1.1);
     EXPECT_NEAR(crown.of(both, two).light.x, 1, 0.02);
 }
+
+TEST_F(Agreements, PicturesShowTheSameDrawnAndSearched) {
+    // Triangles without area are never seen, but so many are not drawn one by one.
+    const auto crowded = [](Mesh mesh) {
+        for (int i = 0; i < 20000; ++i)
+            mesh.triangles.push_back({0, 0, 1});
+        if (!mesh.slots.empty())
+            mesh.slots.resize(mesh.triangles.size(), 0);
+        return mesh;
+    };
+    const Mesh finest = bookcase(1, 0);
+    const Mesh level = bookcase(2, 0.01);
+    Material back;
+    back.base_color = glm::dvec3(0.1);
+    Material red;
+    red.base_color = {0.7, 0.1, 0.1};
+    const ray::SkinPtr shown = skin({back, red});
+    const PictureAgreement drawn =
+        AgreementReference(finest, shown, 1, AgreementReference::kBrightSide).of(level, shown);
+    const AgreementReference searched(crowded(finest), shown, 1, AgreementReference::kBrightSide);
+    for (const Mesh& same : {level, crowded(level)}) {
+        const PictureAgreement other = searched.of(same, shown);
+        EXPECT_NEAR(other.error, drawn.error, 1e-3 * drawn.error);
+        EXPECT_NEAR(other.coverage, drawn.coverage, 1e-3);
+        for (int i = 0; i < 3; ++i)
+            EXPECT_NEAR(other.light[i], drawn.light[i], 1e-3);
+    }
+    EXPECT_GT(drawn.error, 0);
+    EXPECT_LT(drawn.coverage, 1);
+}
