@@ -69,11 +69,12 @@ double MeasuredFinest::distance_for(double error) const {
 MeasuredFinest measure_finest(const Mesh& mesh, std::span<const Material> materials,
                               image::TexelCache& texels, const BuildSettings& settings,
                               const FinestOptions& options, const Job& job) {
-    MeasuredFinest out{mesh, texels, options, settings.rays, bound_of(mesh.positions).radius};
+    const uint32_t samples = samples_of(mesh, options.environment, settings);
+    MeasuredFinest out{mesh, texels, options, rays_of(samples, settings),
+                       bound_of(mesh.positions).radius};
     out.materials.assign(materials.begin(), materials.end());
     out.skin = out.skin_of(materials);
     out.looks = std::make_unique<measure::LookPalette>();
-    const uint32_t samples = samples_of(mesh, options.environment, settings);
     const std::vector<uint16_t> looks = out.looks->of(mesh, materials);
     auto reference = std::make_unique<measure::DeviationReference>(
         mesh,
@@ -83,10 +84,9 @@ MeasuredFinest measure_finest(const Mesh& mesh, std::span<const Material> materi
     out.opacity = measure::mean_opacity(mesh, *out.skin, options.seed);
     out.cast = reference->take_cast_points();  // of the same rays
     out.reference = std::move(reference);
-    out.attributes =
-        measure::measure_visible(mesh, out.sampler(), out.skin,
-                                 out.visible_options(rays_of(samples, settings)), {}, out.cast, job)
-            .attributes;
+    out.attributes = measure::measure_visible(mesh, out.sampler(), out.skin,
+                                              out.visible_options(out.rays), {}, out.cast, job)
+                         .attributes;
     out.glows = std::any_of(materials.begin(), materials.end(), emits);
     out.layered = options.in_layers && is_flat(out.attributes);
     out.views = std::make_unique<const measure::ViewDistances>(mesh, out.scene());

@@ -36,7 +36,7 @@ struct MeasuredFinest {
     const Mesh& mesh;  // must last
     image::TexelCache& texels;
     FinestOptions options;
-    uint64_t rays;                         // that measure its attributes, as BuildSettings
+    uint64_t rays;                         // that measure its attributes: fewer of few triangles
     double size;                           // the radius of its bound, metres
     std::vector<Material> materials = {};  // by slot
     ray::SkinPtr skin = {};                // of these, which levels share

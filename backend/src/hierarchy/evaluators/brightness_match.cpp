@@ -22,6 +22,20 @@ constexpr double kUsedNear = 1.0 / 12;
 // Law: an eighth of the radius is a sixteenth of the size.
 constexpr double kUsedFar = 1.0 / 8;
 
+// The samples of all pictures for each triangle, from which on few a side tell how bright every part
+// is, as if they were single leaves.
+// Taste: a larger value takes more samples of simple meshes.
+constexpr size_t kSamplesOfTriangle = 16;
+
+/// Whether few samples tell how bright a candidate is, which is off by that much on its own.
+bool few_tell(const StandInCandidate& candidate, double own, const MeasuredFinest& finest) {
+    using Pictures = measure::AgreementReference;
+    constexpr size_t kSamples = Pictures::kViews * Pictures::kFewSide * Pictures::kFewSide;
+    return own >= kUsedFar * finest.size &&
+           (candidate.kind != Kind::Mesh ||
+            kSamplesOfTriangle * finest.mesh.triangles.size() <= kSamples);
+}
+
 /// Makes what glows of a candidate glow as much as the finest does.
 void match_glow(StandInCandidate& candidate,
                 const measure::AgreementReference::TracedPictures& traced,
@@ -65,7 +79,7 @@ void match_brightness(StandInCandidate& candidate, const MeasuredFinest& finest,
     const double child_error = finest.options.child_error;
     const double own = candidate.error - child_error;
     const Pictures& reference = finest.glows ? pictures.take(finest.mesh, Pictures::kSide, job)
-                                : own >= kUsedFar * finest.size && candidate.kind != Kind::Mesh
+                                : few_tell(candidate, own, finest)
                                     ? pictures.take_few(job)
                                     : pictures.take(finest.mesh, Pictures::kBrightSide, job);
     ray::SkinPtr current = finest.skin_of(candidate.materials);

@@ -28,7 +28,10 @@ bool shows_as_much_in(const Mesh& level, const ray::MeshScene& scene, const Meas
     // where the change is within this distance of the limit.
     // Taste: a larger value casts more rays.
     constexpr double kUnsure = 0.15;
-    const measure::VisibleSampler sampler(level, scene, finest.options.seed);
+    // Rays that are surer for the finest are surer for a level that resembles it: no pilot is cast.
+    const auto casting = finest.sampler().from_surface() ? measure::CastMethod::FromSurface
+                                                         : measure::CastMethod::FromBound;
+    const measure::VisibleSampler sampler(level, scene, finest.options.seed, casting);
     double change = 0;
     for (const uint64_t share : {8, 2}) {
         const double visible = measure::visible_area(sampler, finest.rays / share, job);
