@@ -51,7 +51,7 @@ std::vector<glm::dvec3> corners_of(const Mesh& mesh) {
     return out;
 }
 
-/// What a ray found: how far off, and of how many pixels.
+/// The distance that a ray found, and the pixels that it stands for.
 using PixelDistance = std::pair<double, uint64_t>;
 
 /// The distance that at most a few of these pixels exceed.
