@@ -5,7 +5,7 @@ namespace lodestone::hierarchy {
 
 Hash hash_of(const BuildSettings& settings) {
     // Law: the version of the algorithms, raised whenever the same settings give other stand-ins.
-    constexpr uint32_t kAlgorithms = 47;
+    constexpr uint32_t kAlgorithms = 48;
     return Hasher()
         .value(kAlgorithms)
         .value(settings.level_ratio)

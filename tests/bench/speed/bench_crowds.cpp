@@ -2,9 +2,10 @@
 // What crowds cost from afar: `cmake --build build/release --target bench_crowds`, then
 // build/release/tests/bench_crowds [--store FOLDER] [--pictures FOLDER] [--houses NUMBER]. Houses
 // of twelve boxes stand 14 m apart in blocks of 8 x 8, the blocks in towns of 8 x 8, and so on; 16
-// of them differ. Each city is built (all of its levels, into the store), then looked at from an
-// oblique angle in which it is 1,000, 100 and 30 pixels wide. What a picture uses should be bounded
-// by its pixels: (occurrences + solids + triangles / 100) a covered pixel at most 2, and hardly
+// of them differ. Two of the cities are one mesh a material, as exporters join houses. Each city is
+// built (all of its levels, into the store), then looked at from an oblique angle in which it is
+// 1,000, 100 and 30 pixels wide. What a picture uses should be bounded by its pixels:
+// (occurrences + solids + triangles / 100) a covered pixel at most 2, and hardly
 // more for ten times as many houses. Pictures of the cut and of full detail (crowd_pictures.h) are
 // compared: their SSIM, and by how much the cut is brighter on covered pixels. With --houses only
 // cities of so many are looked at, with --pictures the pictures are kept.
@@ -14,6 +15,7 @@
 #include "bench/speed/crowd_pictures.h"
 #include "choose/criterion.h"
 #include "choose/cut.h"
+#include "group/loose_parts.h"
 #include "hierarchy/hierarchy_build.h"
 #include "image/compare_images.h"
 #include "ray/mesh_scene.h"
@@ -26,6 +28,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 using namespace lodestone;
 
@@ -46,7 +49,8 @@ struct CrowdOptions {
 struct CityKind {
     size_t houses;
     int materials;
-    double gap;  // metres between the walls of mean houses
+    double gap;           // metres between the walls of mean houses
+    bool meshes = false;  // one mesh a material, as exporters join them, not an object a house
 };
 
 Mesh house(PcgRandom& random, double width, int materials) {
@@ -114,6 +118,38 @@ Model city(const CityKind& kind) {
     return model;
 }
 
+/// The same city as one mesh a material, taken apart as a build does.
+Model joined(const Model& objects) {
+    Model model;
+    model.costs = objects.costs;
+    std::map<uint32_t, Mesh> meshes;  // by material
+    for_each_occurrence(objects, [&](const Occurrence& one) {
+        const Representation& finest = objects.objects[one.object].representations[0];
+        const Mesh& house = finest.mesh();
+        for (uint32_t slot = 0; slot < finest.materials.size(); ++slot) {
+            std::vector<uint8_t> own(house.triangles.size());
+            for (size_t i = 0; i < own.size(); ++i)
+                own[i] = house.slot(i) == slot ? 1 : 0;
+            Mesh part = subset(house, own);
+            part.slots.clear();
+            if (!part.empty())
+                append(meshes[finest.materials[slot]], part, one.world);
+        }
+    });
+    std::vector<Placement> placements;
+    for (auto& [material, mesh] : meshes) {
+        mesh.slots.clear();
+        const std::string name = objects.materials[material].name;
+        const ObjectIndex leaf =
+            models::add_leaf(model, name, std::move(mesh), objects.materials[material]);
+        placements.push_back({leaf, Affine{}, name});
+    }
+    model.root = models::add_group(model, "city", std::move(placements));
+    group::split_loose_parts(model, group::leaves_of(model), {}, {});
+    summarize_assemblies(model, bottom_up(model));
+    return model;
+}
+
 /// An orthographic camera, as the pictures', that shows the model so many pixels wide, from 27
 /// degrees above.
 View view_of(const Bound& bound, double pixels) {
@@ -159,7 +195,7 @@ size_t covered_pixels(const Model& model, double pixels) {
 
 void measure_city(const CityKind& kind, const CrowdOptions& options) {
     const segment::Store store(options.store);
-    Model model = city(kind);
+    Model model = kind.meshes ? joined(city(kind)) : city(kind);
     Problems problems;
     hierarchy::BuildSettings settings;
     settings.rebuild = true;
@@ -197,17 +233,18 @@ void measure_city(const CityKind& kind, const CrowdOptions& options) {
             looks = numbers.data();
             if (!options.pictures.empty()) {
                 const std::string name =
-                    text(options.pictures, "/", kind.houses, "_", kind.materials, "_",
-                         static_cast<int>(kind.gap), "_", side);
+                    text(options.pictures, "/", kind.houses, kind.meshes ? "m_" : "_",
+                         kind.materials, "_", static_cast<int>(kind.gap), "_", side);
                 image::write_png(name + "_full.png", full);
                 image::write_png(name + "_cut.png", ours);
             }
         }
         const double used = static_cast<double>(cut.chosen.size() + solids) +
                             static_cast<double>(cut.triangles) / 100;
-        std::printf("| %zu | %d | %.0f | %.1f | %.0f | %zu | %zu | %zu | %zu | %.2f | %s |\n",
-                    kind.houses, kind.materials, kind.gap, built, pixels, covered,
-                    cut.chosen.size(), solids, static_cast<size_t>(cut.triangles),
+        std::printf("| %zu | %s | %d | %.0f | %.1f | %.0f | %zu | %zu | %zu | %zu | %.2f | %s |\n",
+                    kind.houses, kind.meshes ? "meshes" : "objects", kind.materials, kind.gap,
+                    built, pixels, covered, cut.chosen.size(), solids,
+                    static_cast<size_t>(cut.triangles),
                     used / static_cast<double>(std::max<size_t>(1, covered)), looks.c_str());
         std::fflush(stdout);
     }
@@ -231,13 +268,14 @@ int main(int count, char** arguments) {
         options.store =
             (std::filesystem::temp_directory_path() / "lodestone_bench_crowds").string();
     std::printf(
-        "| houses | materials | gap, m | build, CPU s | pixels wide | covered | "
+        "| houses | made of | materials | gap, m | build, CPU s | pixels wide | covered | "
         "occurrences | solids | triangles | used a covered pixel (<= 2) | SSIM | light, 255ths |\n"
-        "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     try {
         for (const CityKind& kind :
              {CityKind{1000, 8, 4}, CityKind{10000, 8, 4}, CityKind{10000, 1, 4},
-              CityKind{10000, 8, 0}, CityKind{100000, 8, 4}}) {
+              CityKind{10000, 8, 0}, CityKind{100000, 8, 4}, CityKind{1000, 8, 4, true},
+              CityKind{10000, 8, 4, true}}) {
             if (options.houses == 0 || options.houses == kind.houses)
                 measure_city(kind, options);
         }

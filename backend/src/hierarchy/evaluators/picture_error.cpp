@@ -60,6 +60,15 @@ const measure::AgreementReference& FinestPictures::take(const Mesh& seen, int si
     return *pictures_;
 }
 
+const measure::AgreementReference& FinestPictures::from_above(const Mesh& seen, const Job& job) {
+    using Pictures = measure::AgreementReference;
+    if (!above_)
+        above_.emplace(seen, ray::MeshScene(seen, finest_->skin), finest_->skin,
+                       finest_->options.seed, Pictures::kCoarseSide, job,
+                       measure::PictureViews::FromAbove);
+    return *above_;
+}
+
 const measure::AgreementReference& FinestPictures::of_crown(const Job& job) {
     using Pictures = measure::AgreementReference;
     if (!crown_)
@@ -108,6 +117,12 @@ void compare_pictures(StandInCandidate& candidate, std::span<const uint16_t> tin
                       const MeasuredFinest& finest, const FinestPictures& pictures,
                       const Job& job) {
     compare_to(pictures.taken(), candidate, tinted, finest, job);
+    come_to(candidate, CandidateState::Pictured);
+}
+
+void compare_pictures(StandInCandidate& candidate, const MeasuredFinest& finest,
+                      const measure::AgreementReference& pictures, const Job& job) {
+    compare_to(pictures, candidate, {}, finest, job);
     come_to(candidate, CandidateState::Pictured);
 }
 

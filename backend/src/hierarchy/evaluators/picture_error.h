@@ -28,6 +28,9 @@ public:
     const measure::AgreementReference& take_fine(const Job& job);
     /// Few samples of all of the finest, for what is 16 pixels large or less where it is used.
     const measure::AgreementReference& take_few(const Job& job);
+    /// Few samples of the finest, or what of it can be seen, as one sees what stands
+    /// (PictureViews::FromAbove), taken when they are asked for first.
+    const measure::AgreementReference& from_above(const Mesh& seen, const Job& job);
     /// Those of a crown (PictureViews::OfCrowns), taken when they are asked for first.
     const measure::AgreementReference& of_crown(const Job& job);
     /// Those that are there. Throws Error: Internal, where take() was never called.
@@ -41,6 +44,7 @@ private:
     std::optional<measure::AgreementReference> pictures_;
     std::optional<measure::AgreementReference> fine_;
     std::optional<measure::AgreementReference> few_;
+    std::optional<measure::AgreementReference> above_;
     std::optional<measure::AgreementReference> crown_;
     std::optional<glm::dvec3> glow_;
 };
@@ -54,6 +58,10 @@ glm::dvec3 light_over_emitted(const measure::AgreementReference& pictures,
 /// as bright as the finest by its colors, first by those of the slots `tinted`: Pictured.
 void compare_pictures(StandInCandidate& candidate, std::span<const uint16_t> tinted,
                       const MeasuredFinest& finest, const FinestPictures& pictures, const Job& job);
+
+/// Likewise by these pictures of the finest, with no slot first.
+void compare_pictures(StandInCandidate& candidate, const MeasuredFinest& finest,
+                      const measure::AgreementReference& pictures, const Job& job);
 
 /// Whether it agreed at the smallest pixel of these pictures: it may be nearer than they can tell.
 bool agrees_everywhere(const StandInCandidate& candidate, const MeasuredFinest& finest,

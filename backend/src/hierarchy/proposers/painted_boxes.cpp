@@ -50,22 +50,56 @@ double rounded(double share) {
     return step * step;
 }
 
-/// Gives all sides their colors.
+/// Whether a crowd is so wide that it stands on something, as a town does: from below nobody sees
+/// it.
+bool lies_flat(const Box3& box) {
+    // The height over the width.
+    // Taste: a larger value takes heaps for towns.
+    constexpr double kFlat = 0.5;
+    const glm::dvec3 size = box.size();
+    return size.z <= kFlat * std::min(size.x, size.y);
+}
+
+/// Forgets the colors of sides that face down: from above they are seen edge on, and told by chance.
+void forget_undersides(const SidedMesh& boxes, std::vector<glm::dvec4>& colors) {
+    // The least cosine between a side's normal and straight down.
+    // Taste: a larger value keeps the chance colors of tilted boxes.
+    constexpr double kDown = 0.5;
+    std::vector<double> down(boxes.sides, 0);
+    std::vector<double> all(boxes.sides, 0);
+    for (size_t i = 0; i < boxes.side_of.size(); ++i) {
+        const glm::dvec3 area = area_vector(boxes.mesh, i);
+        down[boxes.side_of[i]] -= area.z;
+        all[boxes.side_of[i]] += glm::length(area);
+    }
+    for (size_t side = 0; side < boxes.sides; ++side) {
+        if (down[side] > kDown * all[side])
+            colors[side] = glm::dvec4(0.0);
+    }
+}
+
+/// Gives all sides their colors; those that no picture shows have the mean one.
 StandInCandidate painted(SidedMesh boxes, const std::vector<glm::dvec4>& colors,
                          const MeasuredFinest& finest) {
     glm::dvec3 most(0.0);
-    for (const glm::dvec4& side : colors)
+    glm::dvec4 sum(0.0);
+    for (const glm::dvec4& side : colors) {
         most = glm::max(most, glm::dvec3(side));
+        sum += glm::dvec4(side.w * glm::dvec3(side), side.w);
+    }
+    const glm::dvec3 mean = glm::dvec3(sum) / std::max(sum.w, 1e-9);
     Material material = solids::mean_material(finest.attributes);
     material.base_color = glm::min(most, glm::dvec3(1.0));
     material.vertex_colors = true;
     boxes.mesh.colors.assign(boxes.mesh.positions.size(), glm::vec4(1.0f));
     for (size_t i = 0; i < boxes.side_of.size(); ++i) {
         glm::vec4 color(1.0f);
+        const glm::dvec4& shown = colors[boxes.side_of[i]];
+        const glm::dvec3 side = shown.w > 0 ? glm::dvec3(shown) : mean;
         for (int k = 0; k < 3; ++k) {
             if (material.base_color[k] > 0)
-                color[k] = static_cast<float>(
-                    rounded(std::min(1.0, colors[boxes.side_of[i]][k] / material.base_color[k])));
+                color[k] =
+                    static_cast<float>(rounded(std::min(1.0, side[k] / material.base_color[k])));
         }
         for (int corner = 0; corner < 3; ++corner)
             boxes.mesh.colors[boxes.mesh.triangles[i][corner]] = color;
@@ -109,17 +143,24 @@ void propose_painted_boxes(ProposalRound& round) {
         all.push_back({{{true, solids::kept_above(*box, true, whole.bound.box.low.z), 0}}});
     if (all.empty())
         return;
-    round.pictures.take(mesh, measure::AgreementReference::kCoarseSide, round.job);
+    using Pictures = measure::AgreementReference;
+    const bool stands = lies_flat(whole.bound.box);
+    const Pictures& judged = stands ? round.pictures.from_above(mesh, round.job)
+                                    : round.pictures.take(mesh, Pictures::kCoarseSide, round.job);
     // Others than those that they are judged by.
-    const measure::AgreementReference shown(mesh, finest.skin, finest.options.seed + 1,
-                                            measure::AgreementReference::kCoarseSide, round.job);
+    const Pictures shown(
+        mesh, ray::MeshScene(mesh, finest.skin), finest.skin, finest.options.seed + 1,
+        Pictures::kCoarseSide, round.job,
+        stands ? measure::PictureViews::FromAbove : measure::PictureViews::AllAround);
     const ray::SkinPtr plain = finest.skin_of({});
     for (const Composite& composite : all) {
         SidedMesh boxes = sided(composite);
-        const std::vector<glm::dvec4> colors = shown.side_colors(
+        std::vector<glm::dvec4> colors = shown.side_colors(
             shown.trace(boxes.mesh, plain, round.job), boxes.side_of, boxes.sides);
+        if (stands)
+            forget_undersides(boxes, colors);
         StandInCandidate candidate = painted(std::move(boxes), colors, finest);
-        compare_pictures(candidate, {}, finest, round.pictures, round.job);
+        compare_pictures(candidate, finest, judged, round.job);
         round.candidates.push_back(std::move(candidate));
     }
     round.painted = true;

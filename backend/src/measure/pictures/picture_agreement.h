@@ -27,9 +27,12 @@ inline constexpr double kMostLightOff = 0.20;
 enum class PictureViews : uint8_t {
     /// Along all axes, half of them from below; light counts in pixels.
     AllAround,
-    /// For crowns, which stand on something: from above the horizon, under suns above it (from below
-    /// they cover the same). Which leaves of a crown are lit is chance, pixel by pixel: light
-    /// counts over areas of kCrownPixels by kCrownPixels pixels, coverage in pixels.
+    /// For what stands on something, which nobody sees from below: from above the horizon, under
+    /// suns above it; light counts in pixels.
+    FromAbove,
+    /// For crowns, likewise from above (from below they cover the same). Which leaves of a crown
+    /// are lit is chance, pixel by pixel: light counts over areas of kCrownPixels by kCrownPixels
+    /// pixels, coverage in pixels.
     OfCrowns,
 };
 
@@ -52,9 +55,9 @@ struct PictureRect;  // picture_misses.h
 ///
 /// Pictures are orthographic, along 13 axes (the opposite directions cover the same), of a diffuse
 /// surface under a uniform sky, which gives a quarter of the light, and a sun that stands obliquely
-/// beside the viewer (of crowns, anywhere), with shadows; glass refracts what lies behind it. Both
-/// meshes are sampled by the same rays. Larger pixels are means of smaller ones. Sampling noise is
-/// taken out of the differences.
+/// beside the viewer (of what stands, anywhere above), with shadows; glass refracts what lies
+/// behind it. Both meshes are sampled by the same rays. Larger pixels are means of smaller ones.
+/// Sampling noise is taken out of the differences.
 class AgreementReference {
 public:
     /// Axes along which pictures are taken.

@@ -24,23 +24,23 @@ struct PictureView {
 
     PictureView(const glm::dvec3& towards, size_t number, PictureViews views) {
         frame = picture_frame(towards);
-        // The suns stand around the views by the golden angle: each view has its own. Those of
-        // crowns fill the half sphere above: against the light a crown has that of leaves that face
+        // The suns stand around the views by the golden angle: each view has its own. Those of what
+        // stands fill the half sphere above: against the light a crown has that of leaves that face
         // aside.
         const double turn = kGoldenAngle * static_cast<double>(number);
-        sun = views == PictureViews::OfCrowns
-                  ? sky_direction(number)
-                  : glm::normalize(towards + std::cos(turn) * frame[0] + std::sin(turn) * frame[1]);
+        sun = views == PictureViews::AllAround
+                  ? glm::normalize(towards + std::cos(turn) * frame[0] + std::sin(turn) * frame[1])
+                  : sky_direction(number);
     }
 };
 
-/// Along one of each opposite pair of 26 directions: in turns, or of crowns the upper ones.
+/// Along one of each opposite pair of 26 directions: in turns, or the upper ones.
 std::vector<PictureView> views_of(PictureViews views) {
     std::vector<glm::dvec3> directions = cube_directions();
     directions.resize(directions.size() / 2);
     std::vector<PictureView> out;
     for (size_t i = 0; i < directions.size(); ++i) {
-        const bool opposite = views == PictureViews::OfCrowns ? directions[i].z < 0 : i % 2 == 1;
+        const bool opposite = views == PictureViews::AllAround ? i % 2 == 1 : directions[i].z < 0;
         out.emplace_back(opposite ? -directions[i] : directions[i], i, views);
     }
     return out;

@@ -123,6 +123,38 @@ TEST_F(PaintedBoxes, ASideOverGapsIsDarkerThanWhatStandsThere) {
     }
 }
 
+TEST_F(PaintedBoxes, ATownFromAboveIsAsBrightAsItsHouses) {
+    // Half of the pictures that boxes were painted by were taken from below, where nobody stands:
+    // towns were darker from above than their houses.
+    const Mesh mesh = block(1);
+    const Material wall = models::colored("wall", {0.6, 0.6, 0.6});
+    const auto skin_of = [&](const Material& material) {
+        return std::make_shared<const ray::MeshSkin>(std::vector<Material>{material}, texels_);
+    };
+    const ray::SkinPtr skin = skin_of(wall);
+    const measure::AgreementReference above(mesh, ray::MeshScene(mesh, skin), skin, 77,
+                                            measure::AgreementReference::kSide, {},
+                                            measure::PictureViews::FromAbove);
+    const std::vector<StandInCandidate> all = proposed(mesh, {wall});
+    ASSERT_FALSE(all.empty());
+    for (const StandInCandidate& candidate : all) {
+        const glm::dvec3 light = above.of(candidate.mesh(), skin_of(candidate.materials[0])).light;
+        EXPECT_NEAR(light.x, 1, 0.04) << candidate.mesh().triangles.size() << " triangles";
+    }
+}
+
+TEST_F(PaintedBoxes, SidesBelowThatNobodySeesAreNotBlack) {
+    for (const StandInCandidate& candidate :
+         proposed(block(1), {models::colored("wall", {0.6, 0.6, 0.6})})) {
+        const Mesh& mesh = candidate.mesh();
+        for (size_t i = 0; i < mesh.positions.size(); ++i) {
+            if (mesh.normals[i].z < -0.5f) {
+                EXPECT_GT(candidate.materials[0].base_color.x * mesh.colors[i].x, 0.2);
+            }
+        }
+    }
+}
+
 TEST_F(PaintedBoxes, AreTheSameBitsEveryTime) {
     const auto first = proposed(block(2), {Material{}, models::colored("b", {0.1, 0.2, 0.3})});
     const auto second = proposed(block(2), {Material{}, models::colored("b", {0.1, 0.2, 0.3})});

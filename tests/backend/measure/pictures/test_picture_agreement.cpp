@@ -274,8 +274,11 @@ TEST_F(Agreements, CrownsAreSeenFromAboveTheHorizon) {
     const AgreementReference plainly(both, scene, one, 1, AgreementReference::kSide, {});
     const AgreementReference crown(both, scene, one, 1, AgreementReference::kSide, {},
                                    measure::PictureViews::OfCrowns);
+    const AgreementReference above(both, scene, one, 1, AgreementReference::kSide, {},
+                                   measure::PictureViews::FromAbove);
     EXPECT_GT(plainly.of(both, two).light.x, 1.1);
     EXPECT_NEAR(crown.of(both, two).light.x, 1, 0.02);
+    EXPECT_NEAR(above.of(both, two).light.x, 1, 0.02);
 }
 
 TEST_F(Agreements, PicturesShowTheSameDrawnAndSearched) {
