@@ -59,7 +59,7 @@ glm::dvec3 light_over_emitted(const measure::AgreementReference& pictures,
 void compare_pictures(StandInCandidate& candidate, std::span<const uint16_t> tinted,
                       const MeasuredFinest& finest, const FinestPictures& pictures, const Job& job);
 
-/// Likewise by these pictures of the finest, with no slot first.
+/// Fills the same by these pictures of the finest, with no slot first.
 void compare_pictures(StandInCandidate& candidate, const MeasuredFinest& finest,
                       const measure::AgreementReference& pictures, const Job& job);
 
